@@ -1,0 +1,66 @@
+# Compiler settings and the few functions with which the rooms declare their targets.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+
+set(SCENEGEN_SANITIZE "" CACHE STRING "Sanitizers, as for -fsanitize=")
+option(SCENEGEN_COVERAGE "Build with coverage counters" OFF)
+option(SCENEGEN_FUZZ "Build the libFuzzer targets (clang only)" OFF)
+
+find_program(CCACHE ccache)
+if(CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+endif()
+
+add_library(scenegen_settings INTERFACE)
+# -ffp-contract=off: the same bytes from every compiler and on every processor (no fused multiply-add behind our back).
+target_compile_options(scenegen_settings INTERFACE -ffp-contract=off
+  -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Werror)
+target_compile_definitions(scenegen_settings INTERFACE GLM_FORCE_XYZW_ONLY GLM_ENABLE_EXPERIMENTAL
+  SCENEGEN_VERSION="${PROJECT_VERSION}")
+target_include_directories(scenegen_settings INTERFACE ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/generated)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # g++ 12 reports false positives of these in the standard library at -O2 and -O3 (GCC bugs 105329, 105651, 107852).
+  target_compile_options(scenegen_settings INTERFACE -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
+endif()
+if(SCENEGEN_SANITIZE)
+  add_compile_options(-fsanitize=${SCENEGEN_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${SCENEGEN_SANITIZE})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(scenegen_settings INTERFACE -Wno-maybe-uninitialized)  # false positives under -fsanitize
+  endif()
+endif()
+if(SCENEGEN_COVERAGE)
+  add_compile_options(--coverage)
+  add_link_options(--coverage)
+endif()
+if(SCENEGEN_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()
+
+# scenegen_library(scene SOURCES a.cpp … LIBRARIES …): the static library of a room, target scenegen_<name>.
+function(scenegen_library name)
+  cmake_parse_arguments(A "" "" "SOURCES;LIBRARIES" ${ARGN})
+  add_library(scenegen_${name} STATIC ${A_SOURCES})
+  target_link_libraries(scenegen_${name} PUBLIC scenegen_settings ${A_LIBRARIES})
+endfunction()
+
+# scenegen_program(scenegen SOURCES … LIBRARIES …): a program in build/<preset>/bin.
+function(scenegen_program name)
+  cmake_parse_arguments(A "" "" "SOURCES;LIBRARIES" ${ARGN})
+  add_executable(${name} ${A_SOURCES})
+  target_link_libraries(${name} PRIVATE scenegen_settings ${A_LIBRARIES})
+endfunction()
+
+# scenegen_test(timeline/curves SOURCES curves_test.cpp LIBRARIES …): a Catch2 program, one ctest entry.
+function(scenegen_test name)
+  cmake_parse_arguments(A "" "" "SOURCES;LIBRARIES;LABELS;ARGUMENTS" ${ARGN})
+  string(REPLACE "/" "_" target test_${name})
+  add_executable(${target} ${A_SOURCES})
+  target_link_libraries(${target} PRIVATE scenegen_settings scenegen_test_main ${A_LIBRARIES})
+  add_test(NAME ${name} COMMAND ${target} ${A_ARGUMENTS})
+  set_tests_properties(${name} PROPERTIES LABELS "${A_LABELS}" TIMEOUT 600)
+endfunction()

@@ -1,0 +1,35 @@
+// Are two scenes the same thing to see, at every time?
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace scenegen::timeline {
+
+struct CompareOptions {
+  float transform_tolerance = 1e-5F;  ///< relative to the size of the scene
+  float color_tolerance = 1e-5F;
+  std::size_t most = 20;  ///< differences listed
+};
+
+struct Difference {
+  std::string where;  ///< "building_00_01/floor_2/brick_0017 at 3.25 s"
+  std::string what;   ///< "visible in A, hidden in B"
+};
+
+struct Comparison {
+  std::vector<Difference> differences;  ///< at most `most`
+  std::uint64_t difference_count = 0;
+  std::uint64_t times_compared = 0;
+  [[nodiscard]] bool equal() const { return difference_count == 0; }
+};
+
+/// Compares objects (matched by name), geometry and materials by content, cameras, and the state at every
+/// event time of either scene, just before it, and between keys. Order of arrays, sharing and layout do not
+/// matter.
+[[nodiscard]] Comparison compare(const Scene& a, const Scene& b, const CompareOptions& options = {});
+
+}  // namespace scenegen::timeline
