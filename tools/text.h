@@ -1,0 +1,50 @@
+// Words and numbers as a person writes and reads them on a command line.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/result.h"
+
+namespace scenegen::tools {
+
+/// Decimal digits only: "16". The error says what was wrong ("'1.5' is not a whole number"), its `where` is
+/// empty.
+[[nodiscard]] Result<std::uint64_t> parse_whole(std::string_view text, std::uint64_t least,
+                                                std::uint64_t most);
+/// A finite decimal number, nothing behind it: "0.95", "1e-3".
+[[nodiscard]] Result<double> parse_real(std::string_view text, double least, double most);
+/// "4x4", "16x16x16": exactly `count` parts between `x`. The error shows `form` ("WxL").
+[[nodiscard]] Result<std::vector<std::string_view>> split_size(std::string_view text, std::size_t count,
+                                                               std::string_view form);
+
+/// Shortest text that reads back as the same double: "0.1", "1e-05".
+[[nodiscard]] std::string shortest(double value);
+
+/// The candidate that `text` was most likely meant to be, or "" when none is near: optimal string alignment
+/// distance (Damerau 1964) of at most a third of its length, or `text` is the beginning of exactly one
+/// candidate.
+[[nodiscard]] std::string nearest_word(std::string_view text, std::span<const std::string> candidates);
+/// "unknown value 'hilber' (did you mean 'hilbert'? one of: hilbert, morton, row-prime)"
+[[nodiscard]] std::string unknown_word(std::string_view kind, std::string_view text,
+                                       std::span<const std::string> candidates);
+[[nodiscard]] std::string join(std::span<const std::string> words, std::string_view separator);
+
+/// Decimal units, two significant digits or more: "512 B", "5.1 MB", "1.20 GB".
+[[nodiscard]] std::string human_bytes(std::uint64_t bytes);
+/// Groups of three digits: "38 016".
+[[nodiscard]] std::string human_count(std::uint64_t count);
+/// "0.21 s", "12.5 s", "3 min 05 s".
+[[nodiscard]] std::string human_seconds(double seconds);
+/// `digits` behind the point, trailing zeros dropped: (0.95, 3) is "0.95".
+[[nodiscard]] std::string human_real(double value, int digits);
+
+/// Breaks at blanks so that no line is longer than `width` characters (UTF-8 code points).
+[[nodiscard]] std::vector<std::string> wrap(std::string_view text, std::size_t width);
+/// Characters (code points) of a UTF-8 string: what a column of text takes on a terminal.
+[[nodiscard]] std::size_t display_width(std::string_view text);
+
+}  // namespace scenegen::tools
