@@ -1,5 +1,5 @@
-// Scene -> TimelineData: inverts "object names track" into "track fans out to objects" and sorts all keys that
-// change something into one index by time.
+// Scene -> TimelineData: inverts "object names track" into "track fans out to objects" and sorts all keys
+// that change something into one index by time.
 #include <algorithm>
 #include <bit>
 #include <cassert>
@@ -328,11 +328,11 @@ class Compiler {
 
   const Scene& scene_;
   std::unique_ptr<TimelineData> out_;
-  std::vector<std::uint32_t> compact_;    // scene track -> number in VisibilityEvents or KeyEvents
-  std::vector<std::uint8_t> starts_on_;   // by scene track
-  std::vector<Transform> local_;          // of frames, before the first key
-  std::vector<Pair> targets_;             // (key track, target)
-  std::vector<TimedItem> key_events_;     // item: index into entered_
+  std::vector<std::uint32_t> compact_;   // scene track -> number in VisibilityEvents or KeyEvents
+  std::vector<std::uint8_t> starts_on_;  // by scene track
+  std::vector<Transform> local_;         // of frames, before the first key
+  std::vector<Pair> targets_;            // (key track, target)
+  std::vector<TimedItem> key_events_;    // item: index into entered_
   std::vector<Entered> entered_;
 };
 

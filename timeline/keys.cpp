@@ -9,8 +9,8 @@ namespace scenegen::timeline {
 
 namespace {
 
-// Beyond this cosine the chord and the arc differ by less than float32 can show (angle 1.4 mrad, angle^3 / 24 =
-// 1e-10) and sin(angle) loses digits.
+// Beyond this cosine the chord and the arc differ by less than float32 can show (angle 1.4 mrad, angle^3 / 24
+// = 1e-10) and sin(angle) loses digits.
 constexpr double kNearlyEqual = 0.999999;
 
 glm::vec4 to_vec4(std::span<const float> values) {
@@ -20,7 +20,8 @@ glm::vec4 to_vec4(std::span<const float> values) {
 }
 
 glm::vec4 to_float(const std::array<double, 4>& v) {
-  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]), static_cast<float>(v[3])};
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]),
+          static_cast<float>(v[3])};
 }
 
 /// `fallback` stands in where there is no direction to keep (a cubic spline that passes through zero).
@@ -95,9 +96,9 @@ glm::vec4 evaluate(const Keys& keys, std::int32_t segment, double time_s) {
     const double u2 = u * u;
     const double u3 = u2 * u;
     for (int i = 0; i < 4; ++i) {
-      out[static_cast<std::size_t>(i)] =
-          (2 * u3 - 3 * u2 + 1) * a[i] + length_s * (u3 - 2 * u2 + u) * tangent_out[i] +
-          (3 * u2 - 2 * u3) * b[i] + length_s * (u3 - u2) * tangent_in[i];
+      out[static_cast<std::size_t>(i)] = (2 * u3 - 3 * u2 + 1) * a[i] +
+                                         length_s * (u3 - 2 * u2 + u) * tangent_out[i] +
+                                         (3 * u2 - 2 * u3) * b[i] + length_s * (u3 - u2) * tangent_in[i];
     }
     if (spherical) return normalised(out, a);
   }

@@ -30,8 +30,9 @@ struct Keys {
 [[nodiscard]] bool segment_changes(const Keys& keys, std::int32_t k);
 
 /// Value at `time_s`, which lies in `segment`; width(property) components are meaningful. At a key, and in
-/// a segment that does not change, it is the key's own value, bit for bit. glTF 2.0 appendix C: LINEAR rotations are spherical along the shortest path
-/// and normalised, CUBICSPLINE is Hermite with tangents scaled by the segment's length, rotations normalised.
+/// a segment that does not change, it is the key's own value, bit for bit. glTF 2.0 appendix C: LINEAR
+/// rotations are spherical along the shortest path and normalised, CUBICSPLINE is Hermite with tangents
+/// scaled by the segment's length, rotations normalised.
 [[nodiscard]] glm::vec4 evaluate(const Keys& keys, std::int32_t segment, double time_s);
 
 }  // namespace scenegen::timeline

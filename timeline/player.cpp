@@ -46,8 +46,9 @@ std::size_t events_until(const std::vector<float>& times_s, std::size_t from, do
     }
   }
   const auto begin = times_s.begin();
-  const auto after = std::upper_bound(begin + static_cast<std::ptrdiff_t>(lo), begin + static_cast<std::ptrdiff_t>(hi),
-                                      time_s, [](double t, float e) { return t < static_cast<double>(e); });
+  const auto after =
+      std::upper_bound(begin + static_cast<std::ptrdiff_t>(lo), begin + static_cast<std::ptrdiff_t>(hi),
+                       time_s, [](double t, float e) { return t < static_cast<double>(e); });
   return static_cast<std::size_t>(after - begin);
 }
 
@@ -169,7 +170,8 @@ void Player::State::seek_visibility(double t) {
     for (std::size_t i = std::min(passed, visibility_passed); i < end; ++i) flipped_tracks.flip(v.track[i]);
   } else {
     for (std::uint32_t track = 0; track < v.track_count(); ++track) {
-      const auto flips = std::span(v.flip_s).subspan(v.first_flip[track], v.first_flip[track + 1] - v.first_flip[track]);
+      const auto flips =
+          std::span(v.flip_s).subspan(v.first_flip[track], v.first_flip[track + 1] - v.first_flip[track]);
       const bool odd = ((segment_at(flips, t) + 1) & 1) != 0;
       if (odd != (track_on[track] != v.on_at_start[track])) flipped_tracks.set(track);
     }
@@ -318,7 +320,8 @@ glm::mat4 Player::State::world_from_frame(FrameId frame) const {
 
 // ---- Player
 
-Player::Player(std::shared_ptr<const Timeline> timeline) : state_(std::make_unique<State>(std::move(timeline))) {}
+Player::Player(std::shared_ptr<const Timeline> timeline)
+    : state_(std::make_unique<State>(std::move(timeline))) {}
 Player::~Player() = default;
 Player::Player(Player&&) noexcept = default;
 Player& Player::operator=(Player&&) noexcept = default;

@@ -32,7 +32,7 @@ struct VisibilityEvents {
   std::vector<float> flip_s;
   std::vector<std::uint8_t> on_at_start;  ///< by track
   Lists objects;                          ///< of each track, ascending
-  std::uint64_t all_tracks_cost = 0;      ///< events that a walk may pass before evaluating all tracks is cheaper
+  std::uint64_t all_tracks_cost = 0;  ///< events that a walk may pass before evaluating all tracks is cheaper
 
   [[nodiscard]] std::size_t track_count() const { return on_at_start.size(); }
 };
