@@ -1,0 +1,381 @@
+#include "scene/gltf/write_buffer.h"
+
+#include <cassert>
+
+namespace scenegen::gltf {
+
+namespace {
+
+constexpr std::uint64_t align4(std::uint64_t n) {
+  return (n + 3) & ~std::uint64_t{3};
+}
+
+/// Index 65535 means "restart" in 16 bits.
+bool fits_16_bits(const Geometry& geometry) {
+  return geometry.vertex_count() <= 65535;
+}
+
+std::vector<std::uint8_t> used_geometries(const Scene& scene) {
+  std::vector<std::uint8_t> used(scene.geometries.size(), 0);
+  for (const Mesh& mesh : scene.meshes) {
+    for (const Primitive& p : mesh.primitives) used[p.geometry.value] = 1;
+  }
+  return used;
+}
+
+void plan_geometries(const Scene& scene, BufferPlan& plan) {
+  const std::vector<std::uint8_t> used = used_geometries(scene);
+  plan.geometries.resize(scene.geometries.size());
+  int next = 0;
+  const auto stream = [&](const auto& data, ViewKind kind, int& accessor) {
+    if (data.empty()) return;
+    accessor = next++;
+    plan[kind].bytes += data.size() * sizeof(data[0]);
+  };
+  for (std::size_t g = 0; g < scene.geometries.size(); ++g) {
+    if (used[g] == 0) continue;
+    const Geometry& geometry = scene.geometries[g];
+    GeometryAccessors& accessors = plan.geometries[g];
+    stream(geometry.positions_m, ViewKind::positions, accessors.position);
+    stream(geometry.normals, ViewKind::normals, accessors.normal);
+    stream(geometry.tangents, ViewKind::tangents, accessors.tangent);
+    stream(geometry.texcoords[0], ViewKind::texcoords_0, accessors.texcoord[0]);
+    stream(geometry.texcoords[1], ViewKind::texcoords_1, accessors.texcoord[1]);
+    stream(geometry.colors, ViewKind::colors, accessors.color);
+    if (geometry.indices.empty()) continue;
+    accessors.indices = next++;
+    const bool narrow = fits_16_bits(geometry);
+    plan[narrow ? ViewKind::indices_16 : ViewKind::indices_32].bytes +=
+        geometry.indices.size() * (narrow ? 2U : 4U);
+  }
+  plan.accessor_count = static_cast<std::uint32_t>(next);
+}
+
+std::uint64_t value_floats(const Scene& scene, const ValueOutput& output) {
+  const std::uint64_t parts = file_interpolation(scene, output.track) == Interpolation::cubic_spline ? 3 : 1;
+  return FileKeys(scene, output.track).count * parts * width(scene.tracks[output.track.value].property);
+}
+
+void plan_animation(const Scene& scene, const AnimationPlan& animation, BufferPlan& plan) {
+  const auto keys_of = [&](TrackId track) { return std::uint64_t{FileKeys(scene, track).count}; };
+  plan.first_input = plan.accessor_count;
+  for (const TrackId track : animation.inputs) plan[ViewKind::times].bytes += keys_of(track) * 4;
+  plan.first_byte_output = plan.first_input + static_cast<std::uint32_t>(animation.inputs.size());
+  for (const std::uint32_t p : animation.byte_outputs)
+    plan[ViewKind::bytes].bytes += keys_of(animation.patterns[p].track);
+  plan.first_scale_output =
+      plan.first_byte_output + static_cast<std::uint32_t>(animation.byte_outputs.size());
+  for (const ScaleOutput& o : animation.scale_outputs)
+    plan[ViewKind::values].bytes += keys_of(animation.patterns[o.pattern].track) * 12;
+  plan.first_value_output =
+      plan.first_scale_output + static_cast<std::uint32_t>(animation.scale_outputs.size());
+  for (const ValueOutput& o : animation.value_outputs)
+    plan[ViewKind::values].bytes += value_floats(scene, o) * 4;
+  plan.accessor_count = plan.first_value_output + static_cast<std::uint32_t>(animation.value_outputs.size());
+}
+
+void plan_instances(const Scene& scene, const NodePlan& nodes, BufferPlan& plan) {
+  plan.first_instance = plan.accessor_count;
+  if (nodes.layout != Layout::instances) return;
+  for (const Group& group : nodes.groups) {
+    plan.accessor_count += instance_accessors(group);
+    plan[ViewKind::translations].bytes += std::uint64_t{group.count} * 12;
+    if (group.rotated) plan[ViewKind::rotations].bytes += std::uint64_t{group.count} * 16;
+    if (group.scaled) plan[ViewKind::scales].bytes += std::uint64_t{group.count} * 12;
+    plan[ViewKind::object_ids].bytes += std::uint64_t{group.count} * 4;
+  }
+  ByteSink counter;
+  write_front_coded(scene.objects.names, counter);
+  plan[ViewKind::names].bytes = counter.total();
+}
+
+}  // namespace
+
+std::uint32_t BufferPlan::accessor_of(const AnimationSampler& sampler) const {
+  switch (sampler.kind) {
+    case OutputKind::bytes:
+      return first_byte_output + sampler.output;
+    case OutputKind::scale:
+      return first_scale_output + sampler.output;
+    case OutputKind::values:
+      return first_value_output + sampler.output;
+  }
+  return 0;
+}
+
+BufferPlan plan_buffer(const Scene& scene, const NodePlan& nodes, const AnimationPlan& animation) {
+  BufferPlan plan;
+  plan_geometries(scene, plan);
+  plan_animation(scene, animation, plan);
+  plan_instances(scene, nodes, plan);
+  for (const Image& image : scene.images) plan.images.push_back({0, image.bytes.size(), 0});
+
+  const auto place = [&](BufferPlan::View& view) {
+    if (view.bytes == 0) return;
+    view.offset = plan.bytes;
+    view.index = plan.view_count++;
+    plan.bytes = align4(plan.bytes + view.bytes);
+  };
+  for (BufferPlan::View& view : plan.views) place(view);
+  for (BufferPlan::View& view : plan.images) place(view);
+  return plan;
+}
+
+namespace {
+
+/// Writes the elements of /accessors one after the other and keeps track of the offset in each view.
+class AccessorText {
+ public:
+  AccessorText(const BufferPlan& plan, TextOut& out) : plan_(plan), out_(out), commas_(out) {}
+
+  /// Opens an accessor; the caller adds min and max, then calls close().
+  TextOut& open(ViewKind kind, int component_type, std::uint64_t count, std::string_view type,
+                std::uint64_t bytes) {
+    commas_.next().raw(R"({"bufferView":)");
+    out_.number(plan_[kind].index);
+    std::uint64_t& offset = offsets_[static_cast<std::size_t>(kind)];
+    if (offset != 0) {
+      out_.raw(R"(,"byteOffset":)");
+      out_.number(offset);
+    }
+    out_.raw(R"(,"componentType":)");
+    out_.number(component_type);
+    out_.raw(R"(,"count":)");
+    out_.number(count);
+    out_.raw(R"(,"type":")");
+    out_.raw(type);
+    out_.raw("\"");
+    offset += bytes;
+    ++count_;
+    return out_;
+  }
+  void close() { out_.raw("}"); }
+  void add(ViewKind kind, int component_type, std::uint64_t count, std::string_view type,
+           std::uint64_t bytes) {
+    open(kind, component_type, count, type, bytes);
+    close();
+  }
+  [[nodiscard]] std::uint32_t count() const { return count_; }
+
+ private:
+  const BufferPlan& plan_;
+  TextOut& out_;
+  Commas commas_;
+  std::array<std::uint64_t, kViewKinds> offsets_{};
+  std::uint32_t count_ = 0;
+};
+
+constexpr int kUnsignedByte = 5121, kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
+
+void emit_geometry_accessors(const Geometry& geometry, AccessorText& accessors) {
+  const auto stream = [&](const auto& data, ViewKind kind, std::string_view type) {
+    if (!data.empty()) accessors.add(kind, kFloat, data.size(), type, data.size() * sizeof(data[0]));
+  };
+  const Box box = geometry.bounds();
+  const std::size_t vertices = geometry.positions_m.size();
+  TextOut& out = accessors.open(ViewKind::positions, kFloat, vertices, "VEC3", vertices * sizeof(glm::vec3));
+  out.raw(R"(,"min":)");
+  out.numbers(box.lo);
+  out.raw(R"(,"max":)");
+  out.numbers(box.hi);
+  accessors.close();
+  stream(geometry.normals, ViewKind::normals, "VEC3");
+  stream(geometry.tangents, ViewKind::tangents, "VEC4");
+  stream(geometry.texcoords[0], ViewKind::texcoords_0, "VEC2");
+  stream(geometry.texcoords[1], ViewKind::texcoords_1, "VEC2");
+  stream(geometry.colors, ViewKind::colors, "VEC4");
+  const std::size_t indices = geometry.indices.size();
+  if (indices == 0) return;
+  if (fits_16_bits(geometry)) {
+    accessors.add(ViewKind::indices_16, kUnsignedShort, indices, "SCALAR", indices * 2);
+  } else {
+    accessors.add(ViewKind::indices_32, kUnsignedInt, indices, "SCALAR", indices * 4);
+  }
+}
+
+void emit_animation_accessors(const Scene& scene, const AnimationPlan& animation, AccessorText& accessors) {
+  for (const TrackId track : animation.inputs) {
+    const FileKeys keys(scene, track);
+    TextOut& out =
+        accessors.open(ViewKind::times, kFloat, keys.count, "SCALAR", std::uint64_t{keys.count} * 4);
+    out.raw(R"(,"min":[)");
+    out.number(file_time_s(scene, track, keys, 0));
+    out.raw(R"(],"max":[)");
+    out.number(file_time_s(scene, track, keys, keys.count - 1));
+    out.raw("]");
+    accessors.close();
+  }
+  for (const std::uint32_t p : animation.byte_outputs) {
+    const std::uint64_t count = FileKeys(scene, animation.patterns[p].track).count;
+    accessors.add(ViewKind::bytes, kUnsignedByte, count, "SCALAR", count);
+  }
+  for (const ScaleOutput& o : animation.scale_outputs) {
+    const std::uint64_t count = FileKeys(scene, animation.patterns[o.pattern].track).count;
+    accessors.add(ViewKind::values, kFloat, count, "VEC3", count * 12);
+  }
+  for (const ValueOutput& o : animation.value_outputs) {
+    const std::uint64_t floats = value_floats(scene, o);
+    const std::uint32_t w = width(scene.tracks[o.track.value].property);
+    accessors.add(ViewKind::values, kFloat, floats / w, w == 3 ? "VEC3" : "VEC4", floats * 4);
+  }
+}
+
+void write_indices(const Geometry& geometry, bool narrow, ByteSink& sink) {
+  if (geometry.indices.empty() || fits_16_bits(geometry) != narrow) return;
+  if (!narrow) return sink.write(geometry.indices.data(), geometry.indices.size() * 4);
+  for (const std::uint32_t index : geometry.indices) {
+    const auto value = static_cast<std::uint16_t>(index);
+    sink.write(&value, 2);
+  }
+}
+
+void write_times(const Scene& scene, const AnimationPlan& animation, ByteSink& sink) {
+  for (const TrackId track : animation.inputs) {
+    const FileKeys keys(scene, track);
+    for (std::uint32_t k = 0; k < keys.count; ++k) {
+      const float time_s = file_time_s(scene, track, keys, k);
+      sink.write(&time_s, 4);
+    }
+  }
+}
+
+void write_values(const Scene& scene, const AnimationPlan& animation, ByteSink& sink) {
+  for (const ScaleOutput& o : animation.scale_outputs) {
+    const Pattern& pattern = animation.patterns[o.pattern];
+    const FileKeys keys(scene, pattern.track);
+    for (std::uint32_t k = 0; k < keys.count; ++k) {
+      const glm::vec3 scale = pattern.shown(scene, keys.source(k)) ? o.shown : glm::vec3(0.0F);
+      sink.write(&scale, 12);
+    }
+  }
+  for (const ValueOutput& o : animation.value_outputs)
+    for_each_file_value(scene, o.track, o.divisor, [&](float v) { sink.write(&v, 4); });
+}
+
+void write_visibility_bytes(const Scene& scene, const AnimationPlan& animation, ByteSink& sink) {
+  for (const std::uint32_t p : animation.byte_outputs) {
+    const Pattern& pattern = animation.patterns[p];
+    const FileKeys keys(scene, pattern.track);
+    for (std::uint32_t k = 0; k < keys.count; ++k) {
+      const std::uint8_t value = pattern.shown(scene, keys.source(k)) ? 1 : 0;
+      sink.write(&value, 1);
+    }
+  }
+}
+
+/// One attribute of all instances. The pass over the groups is repeated for each, so that nothing is
+/// collected.
+void write_instances(const Scene& scene, const NodePlan& nodes, ViewKind kind, ByteSink& sink) {
+  if (nodes.layout != Layout::instances) return;
+  for (const Group& group : nodes.groups) {
+    if ((kind == ViewKind::rotations && !group.rotated) || (kind == ViewKind::scales && !group.scaled))
+      continue;
+    for (std::uint32_t k = group.first; k < group.first + group.count; ++k) {
+      const std::uint32_t object = nodes.grouped[k];
+      const Transform& transform = scene.objects.frame_from_object[object];
+      const glm::quat& r = transform.rotation;
+      const glm::vec4 rotation(r.x, r.y, r.z, r.w);
+      if (kind == ViewKind::translations) sink.write(&transform.translation_m, 12);
+      if (kind == ViewKind::rotations) sink.write(&rotation, 16);
+      if (kind == ViewKind::scales) sink.write(&transform.scale, 12);
+      if (kind == ViewKind::object_ids) sink.write(&object, 4);
+    }
+  }
+}
+
+void write_geometries(const Scene& scene, const BufferPlan& plan, ViewKind kind, ByteSink& sink) {
+  const auto put = [&](const auto& data) { sink.write(data.data(), data.size() * sizeof(data[0])); };
+  for (std::size_t g = 0; g < scene.geometries.size(); ++g) {
+    if (plan.geometries[g].position < 0) continue;
+    const Geometry& geometry = scene.geometries[g];
+    if (kind == ViewKind::positions) put(geometry.positions_m);
+    if (kind == ViewKind::normals) put(geometry.normals);
+    if (kind == ViewKind::tangents) put(geometry.tangents);
+    if (kind == ViewKind::texcoords_0) put(geometry.texcoords[0]);
+    if (kind == ViewKind::texcoords_1) put(geometry.texcoords[1]);
+    if (kind == ViewKind::colors) put(geometry.colors);
+    if (kind == ViewKind::indices_16 || kind == ViewKind::indices_32)
+      write_indices(geometry, kind == ViewKind::indices_16, sink);
+  }
+}
+
+}  // namespace
+
+void emit_accessors(const Scene& scene, const NodePlan& nodes, const AnimationPlan& animation,
+                    const BufferPlan& plan, TextOut& out) {
+  AccessorText accessors(plan, out);
+  for (std::size_t g = 0; g < scene.geometries.size(); ++g) {
+    if (plan.geometries[g].position >= 0) emit_geometry_accessors(scene.geometries[g], accessors);
+  }
+  emit_animation_accessors(scene, animation, accessors);
+  if (nodes.layout == Layout::instances) {
+    for (const Group& group : nodes.groups) {
+      const std::uint64_t n = group.count;
+      accessors.add(ViewKind::translations, kFloat, n, "VEC3", n * 12);
+      if (group.rotated) accessors.add(ViewKind::rotations, kFloat, n, "VEC4", n * 16);
+      if (group.scaled) accessors.add(ViewKind::scales, kFloat, n, "VEC3", n * 12);
+      accessors.add(ViewKind::object_ids, kUnsignedInt, n, "SCALAR", n * 4);
+    }
+  }
+  assert(accessors.count() == plan.accessor_count);
+}
+
+void emit_buffer_views(const Scene& scene, const BufferPlan& plan, TextOut& out) {
+  Commas commas(out);
+  const auto view = [&](const BufferPlan::View& v, int stride, int target) {
+    if (v.bytes == 0) return;
+    commas.next().raw(R"({"buffer":0,"byteOffset":)");
+    out.number(v.offset);
+    out.raw(R"(,"byteLength":)");
+    out.number(v.bytes);
+    if (stride != 0) {
+      out.raw(R"(,"byteStride":)");
+      out.number(stride);
+    }
+    if (target != 0) {
+      out.raw(R"(,"target":)");
+      out.number(target);
+    }
+    out.raw("}");
+  };
+  constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
+  view(plan[ViewKind::positions], sizeof(glm::vec3), kArrayBuffer);
+  view(plan[ViewKind::normals], sizeof(glm::vec3), kArrayBuffer);
+  view(plan[ViewKind::tangents], sizeof(glm::vec4), kArrayBuffer);
+  view(plan[ViewKind::texcoords_0], sizeof(glm::vec2), kArrayBuffer);
+  view(plan[ViewKind::texcoords_1], sizeof(glm::vec2), kArrayBuffer);
+  view(plan[ViewKind::colors], sizeof(glm::vec4), kArrayBuffer);
+  view(plan[ViewKind::indices_16], 0, kElementArrayBuffer);
+  view(plan[ViewKind::indices_32], 0, kElementArrayBuffer);
+  for (std::size_t kind = static_cast<std::size_t>(ViewKind::times); kind < kViewKinds; ++kind)
+    view(plan.views[kind], 0, 0);
+  for (std::size_t i = 0; i < scene.images.size(); ++i) view(plan.images[i], 0, 0);
+}
+
+void write_buffer(const Scene& scene, const NodePlan& nodes, const AnimationPlan& animation,
+                  const BufferPlan& plan, ByteSink& sink) {
+  const std::uint64_t start = sink.total();
+  const auto pad = [&] {
+    const std::uint64_t at = sink.total() - start;
+    sink.fill(0, align4(at) - at);
+  };
+  for (std::size_t k = 0; k < kViewKinds && !sink.failed(); ++k) {
+    const auto kind = static_cast<ViewKind>(k);
+    assert(plan[kind].bytes == 0 || sink.total() - start == plan[kind].offset);
+    if (kind < ViewKind::times) write_geometries(scene, plan, kind, sink);
+    if (kind == ViewKind::times) write_times(scene, animation, sink);
+    if (kind == ViewKind::values) write_values(scene, animation, sink);
+    if (kind == ViewKind::bytes) write_visibility_bytes(scene, animation, sink);
+    if (kind >= ViewKind::translations && kind <= ViewKind::object_ids)
+      write_instances(scene, nodes, kind, sink);
+    if (kind == ViewKind::names && plan[kind].bytes != 0) write_front_coded(scene.objects.names, sink);
+    pad();
+  }
+  for (const Image& image : scene.images) {
+    sink.write(image.bytes.data(), image.bytes.size());
+    pad();
+  }
+  assert(sink.failed() || sink.total() - start == plan.bytes);
+}
+
+}  // namespace scenegen::gltf

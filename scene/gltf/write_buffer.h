@@ -1,0 +1,80 @@
+// The binary part: buffer views, where every accessor's data lies, and the bytes themselves, streamed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "scene/gltf/write_plan.h"
+#include "scene/gltf/write_sink.h"
+#include "scene/gltf/write_text.h"
+#include "scene/gltf/write_tracks.h"
+#include "scene/scene.h"
+
+namespace scenegen::gltf {
+
+/// One buffer view for each kind of data, in this order; images follow, one view each. An empty one is left
+/// out.
+enum class ViewKind : std::uint8_t {
+  positions,
+  normals,
+  tangents,
+  texcoords_0,
+  texcoords_1,
+  colors,
+  indices_16,
+  indices_32,
+  times,
+  values,
+  bytes,
+  translations,
+  rotations,
+  scales,
+  object_ids,
+  names,
+};
+constexpr std::size_t kViewKinds = 16;
+
+/// Accessors of a geometry; -1 where it has none (or where no mesh uses it).
+struct GeometryAccessors {
+  int position = -1, normal = -1, tangent = -1, color = -1, indices = -1;
+  std::array<int, 2> texcoord{-1, -1};
+};
+
+struct BufferPlan {
+  struct View {
+    std::uint64_t offset = 0, bytes = 0;
+    std::uint32_t index = 0;  ///< bufferViews[index]
+  };
+  std::array<View, kViewKinds> views;
+  std::vector<View> images;
+  std::uint32_t view_count = 0;
+  std::uint64_t bytes = 0;  ///< a multiple of 4
+
+  std::vector<GeometryAccessors> geometries;
+  std::uint32_t first_input = 0, first_byte_output = 0, first_scale_output = 0, first_value_output = 0,
+                first_instance = 0, accessor_count = 0;
+
+  [[nodiscard]] const View& operator[](ViewKind kind) const { return views[static_cast<std::size_t>(kind)]; }
+  [[nodiscard]] View& operator[](ViewKind kind) { return views[static_cast<std::size_t>(kind)]; }
+  [[nodiscard]] std::uint32_t accessor_of(const AnimationSampler& sampler) const;
+};
+
+/// Accessors of one instancing node: TRANSLATION, ROTATION if rotated, SCALE if scaled, _OBJECT_ID.
+[[nodiscard]] inline std::uint32_t instance_accessors(const Group& group) {
+  return 2U + (group.rotated ? 1U : 0U) + (group.scaled ? 1U : 0U);
+}
+
+[[nodiscard]] BufferPlan plan_buffer(const Scene& scene, const NodePlan& nodes,
+                                     const AnimationPlan& animation);
+
+/// The elements of /accessors and /bufferViews, without the brackets.
+void emit_accessors(const Scene& scene, const NodePlan& nodes, const AnimationPlan& animation,
+                    const BufferPlan& plan, TextOut& out);
+void emit_buffer_views(const Scene& scene, const BufferPlan& plan, TextOut& out);
+
+/// plan.bytes bytes.
+void write_buffer(const Scene& scene, const NodePlan& nodes, const AnimationPlan& animation,
+                  const BufferPlan& plan, ByteSink& sink);
+
+}  // namespace scenegen::gltf

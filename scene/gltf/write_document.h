@@ -1,0 +1,67 @@
+// The whole document: plan, then JSON text and binary part as often as they are asked for.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/gltf/write.h"
+#include "scene/gltf/write_assets.h"
+#include "scene/gltf/write_buffer.h"
+#include "scene/gltf/write_plan.h"
+#include "scene/gltf/write_text.h"
+#include "scene/scene.h"
+
+namespace scenegen::gltf {
+
+/// The sampler of every channel; kNone where there is no channel.
+struct ChannelPlan {
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+  AnimationPlan animation;
+  std::vector<std::uint32_t> pointer_of_track;     ///< of visibility tracks
+  std::vector<std::uint32_t> unit_scale_of_track;  ///< (0,0,0) and (1,1,1): groups and inserted parents
+  std::vector<std::uint32_t> scale_of_object;      ///< by object node (NodePlan::object_at)
+  std::vector<std::uint32_t> of_look, of_frame_track, of_material_track;
+  std::uint64_t channel_count = 0;
+};
+
+/// Everything about a scene's file but its bytes. Keeps a reference to the scene.
+class Document {
+ public:
+  Document(const Scene& scene, const WriteOptions& options);
+
+  /// The JSON text; `buffer_uri` empty for a .glb. The same at every call.
+  void emit_json(std::string_view buffer_uri, ByteSink& sink) const;
+  [[nodiscard]] std::uint64_t buffer_bytes() const { return buffer_.bytes; }
+  void emit_buffer(ByteSink& sink) const { write_buffer(scene_, nodes_, channels_.animation, buffer_, sink); }
+  /// Everything but the byte counts.
+  [[nodiscard]] WriteReport report() const;
+
+ private:
+  void emit_asset(TextOut& out) const;
+  void emit_appearance(TextOut& out) const;
+  void emit_extensions(TextOut& out) const;
+  void emit_scenes(TextOut& out) const;
+  void emit_nodes(TextOut& out) const;
+  void emit_object_nodes(Commas& commas, TextOut& out) const;
+  void emit_group_nodes(Commas& commas, TextOut& out) const;
+  void emit_frame_nodes(Commas& commas, TextOut& out) const;
+  void emit_inserted_nodes(Commas& commas, TextOut& out) const;
+  void emit_animation(TextOut& out) const;
+  void emit_channels(TextOut& out) const;
+  void emit_cameras(TextOut& out) const;
+  void emit_assets(TextOut& out) const;
+  /// Node at the top of an object: its own, or the inserted parent.
+  [[nodiscard]] std::uint32_t top_node_of(std::uint32_t object) const;
+
+  const Scene& scene_;
+  NodePlan nodes_;
+  std::vector<float> strengths_;
+  ChannelPlan channels_;
+  BufferPlan buffer_;
+  AssetTrees assets_;
+};
+
+[[nodiscard]] ChannelPlan plan_channels(const Scene& scene, const NodePlan& nodes,
+                                        const std::vector<float>& strengths);
+
+}  // namespace scenegen::gltf
