@@ -103,7 +103,7 @@ Result<std::uint64_t> check(const Scene& scene, const AppearanceOptions& options
     return fail(ErrorKind::usage, "--seed",
                 std::to_string(options.seed) + ": from 0 to " + std::to_string(limits::kMaxSeed));
   }
-  const Result<std::uint64_t> cells = checked_cell_count(options.cells);
+  Result<std::uint64_t> cells = checked_cell_count(options.cells);
   if (!cells) return cells;
   if (*cells == 1 && options.coherence < 1.0) {
     return fail(

@@ -87,8 +87,8 @@ std::uint64_t morton_key(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
 
 void morton_keys(const glm::uvec3* cells, std::size_t count, std::uint64_t* keys) {
 #if defined(__x86_64__)
-  static const bool kFast = pdep_is_fast();
-  if (kFast) return morton_keys_bmi2(cells, count, keys);
+  static const bool fast = pdep_is_fast();
+  if (fast) return morton_keys_bmi2(cells, count, keys);
 #endif
   for (std::size_t i = 0; i < count; ++i) keys[i] = morton_key(cells[i].x, cells[i].y, cells[i].z);
 }
@@ -138,7 +138,7 @@ glm::uvec3 hilbert_cell(std::uint64_t key, unsigned bits) {
 
 void hilbert_keys(const glm::uvec3* cells, std::size_t count, unsigned bits, std::uint64_t* keys) {
   assert(bits >= 1 && bits <= kMaxBits);
-  static const HilbertTable kTable;
+  static const HilbertTable table;
   // Levels in whole chunks of three: the missing ones on top are octant 0 from a start state that undoes
   // them.
   const unsigned chunks = (bits + 2) / 3;
@@ -150,9 +150,9 @@ void hilbert_keys(const glm::uvec3* cells, std::size_t count, unsigned bits, std
     morton_keys(cells + begin, end - begin, keys + begin);
     std::size_t i = begin;
     for (; i + kSideBySide <= end; i += kSideBySide) {
-      hilbert_from_morton<kSideBySide>(kTable, chunks, start, keys + i);
+      hilbert_from_morton<kSideBySide>(table, chunks, start, keys + i);
     }
-    for (; i < end; ++i) hilbert_from_morton<1>(kTable, chunks, start, keys + i);
+    for (; i < end; ++i) hilbert_from_morton<1>(table, chunks, start, keys + i);
   }
 }
 
