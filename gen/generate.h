@@ -12,12 +12,17 @@
 
 namespace scenegen::gen {
 
-/// Sizes in metres, author's frame (Z up): x along the building's width, y along its length.
+/// `mixed`: most buildings gabled, some flat, seeded. Gables wider than 24 m are not built: `mixed` is flat
+/// there.
+enum class Roof : std::uint8_t { mixed, gabled, flat, none };
+
+/// Sizes in metres, author's frame (Z up): x along the building's width, y along its length. Lengths are
+/// rounded to whole millimetres (the brick's length to two), windows to half bricks and whole courses.
 struct TownOptions {
   glm::uvec2 grid{1, 1};               ///< buildings along x and y
   double spacing_m = 6.0;              ///< clear distance between neighbouring buildings
   glm::dvec3 brick_m{0.5, 0.25, 0.2};  ///< length, width (= wall thickness), height of a brick
-  glm::uvec2 building_bricks{12, 16};  ///< width and length of a building in brick lengths
+  glm::uvec2 building_bricks{10, 14};  ///< width and length of a building in brick lengths
   std::uint32_t floor_courses = 14;    ///< height of a floor in courses of bricks
   std::uint32_t floors = 3;
   bool partitions = true;
@@ -26,6 +31,7 @@ struct TownOptions {
   std::uint32_t extras_per_floor = 0;  ///< 0: no extra objects
   std::string extra_model = "box";     ///< "box", "sphere:SLICES", or a file
   std::string building_model;  ///< a file whose content stands in for each building; empty: build of bricks
+  Roof roof = Roof::mixed;
   bool ground = true;
   std::uint64_t seed = 1;
   unsigned threads = 1;
@@ -38,6 +44,7 @@ struct Generated {
 };
 
 /// What a scene will hold, computed without building it (for --dry-run); equal to what generating gives.
+/// Vertices and triangles are those drawn: a shared mesh counts once an object (as in D's table 1).
 struct Prediction {
   std::uint64_t objects = 0, vertices = 0, triangles = 0;
 };

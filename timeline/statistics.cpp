@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "timeline/appearance.h"
+
 namespace scenegen::timeline {
 
 Statistics statistics(const Scene& scene, unsigned threads) {
@@ -48,7 +50,10 @@ Statistics statistics(const Scene& scene, unsigned threads) {
     out.least_events = out.least_events == 0 ? count : std::min(out.least_events, count);
   }
   if (out.moments > 0) out.mean_events = static_cast<double>(out.events) / static_cast<double>(out.moments);
-  if (scene.info.appearance) out.locality_cells = scene.info.appearance->locality_cells;
+  if (scene.info.appearance) {
+    out.locality_cells = scene.info.appearance->locality_cells;
+    if (const Result<double> measured = measure_coherence(scene, threads)) out.coherence_measured = *measured;
+  }
   return out;
 }
 

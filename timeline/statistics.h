@@ -24,7 +24,8 @@ struct Statistics {
   double mean_events = 0;
   double duration_s = 0;
   Box bounds_m;
-  std::optional<double> coherence_measured;  ///< measured again from the tracks; none without info.appearance
+  std::optional<double>
+      coherence_measured;  ///< again, from the tracks; none without (usable) info.appearance
   std::optional<double> locality_cells;
 };
 [[nodiscard]] Statistics statistics(const Scene& scene, unsigned threads = 1);

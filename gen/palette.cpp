@@ -1,0 +1,118 @@
+#include "gen/palette.h"
+
+#include <utility>
+
+#include "gen/primitives.h"
+#include "gen/textures.h"
+
+namespace scenegen::gen {
+namespace {
+
+struct Paint {
+  const char* name;
+  glm::vec4 color;  // linear
+  float roughness;
+  float metallic = 0.0F;
+};
+
+const Paint& paint_of(Look look) {
+  // Bricks multiply the texture's colour: three firings of one clay.
+  static const std::array<Paint, kLooks> kPaints{{
+      {"brick_red", {1.0F, 1.0F, 1.0F, 1.0F}, 0.9F},
+      {"brick_dark", {0.68F, 0.62F, 0.62F, 1.0F}, 0.9F},
+      {"brick_pale", {1.0F, 0.86F, 0.74F, 1.0F}, 0.9F},
+      {"plaster", {0.82F, 0.79F, 0.73F, 1.0F}, 0.95F},
+      {"stone", {0.60F, 0.56F, 0.49F, 1.0F}, 0.85F},
+      {"paint", {0.86F, 0.85F, 0.82F, 1.0F}, 0.5F},
+      {"glass", {0.30F, 0.42F, 0.52F, 0.42F}, 0.05F},
+      {"door", {0.025F, 0.09F, 0.075F, 1.0F}, 0.4F},
+      {"tile_red", {0.36F, 0.095F, 0.05F, 1.0F}, 0.75F},
+      {"tile_brown", {0.27F, 0.075F, 0.045F, 1.0F}, 0.75F},
+      {"gravel", {0.30F, 0.29F, 0.27F, 1.0F}, 1.0F},
+      {"pavement", {0.42F, 0.40F, 0.37F, 1.0F}, 0.95F},
+      {"street", {0.16F, 0.16F, 0.165F, 1.0F}, 0.95F},
+      {"grass", {0.14F, 0.26F, 0.065F, 1.0F}, 1.0F},
+      {"cargo", {0.62F, 0.36F, 0.12F, 1.0F}, 0.8F},
+  }};
+  return kPaints[static_cast<std::size_t>(look)];
+}
+
+bool is_brick(Look look) {
+  return look == Look::brick_red || look == Look::brick_dark || look == Look::brick_pale;
+}
+
+constexpr int kRepeat = 10497, kClampToEdge = 33071;
+
+}  // namespace
+
+Look look_of(PartKind kind) {
+  static constexpr std::array<Look, kPartKinds> kLooksOf{
+      Look::brick_red, Look::plaster,    Look::stone,  Look::stone,   Look::paint,
+      Look::glass,     Look::door,       Look::stone,  Look::stone,   Look::stone,
+      Look::tile_red,  Look::tile_brown, Look::gravel, Look::pavement};
+  return kLooksOf[static_cast<std::size_t>(kind)];
+}
+
+Palette::Palette(Scene& scene, Geometry box, const glm::ivec3& brick_mm)
+    : scene_(scene), brick_mm_(brick_mm) {
+  scene_.geometries.push_back(std::move(box));
+  box_ = GeometryId(scene_.geometries.size() - 1);
+}
+
+TextureId Palette::texture(Image image, int wrap) {
+  scene_.images.push_back(std::move(image));
+  scene_.textures.push_back({ImageId(scene_.images.size() - 1), {9729, 9987, wrap, wrap}});
+  return TextureId(scene_.textures.size() - 1);
+}
+
+void Palette::add_brick_textures() {
+  if (brick_color_.valid()) return;
+  BrickImages images = brick_images(brick_mm_);
+  brick_color_ = texture(std::move(images.base_color), kClampToEdge);
+  brick_normal_ = texture(std::move(images.normal), kClampToEdge);
+}
+
+MaterialId Palette::material(Look look) {
+  MaterialId& id = materials_[static_cast<std::size_t>(look)];
+  if (id.valid()) return id;
+  const Paint& paint = paint_of(look);
+  Material m;
+  m.name = paint.name;
+  m.base_color = paint.color;
+  m.metallic = paint.metallic;
+  m.roughness = paint.roughness;
+  if (look == Look::glass) m.alpha_mode = AlphaMode::blend;
+  if (is_brick(look)) {
+    add_brick_textures();
+    m.base_color_texture.texture = brick_color_;
+    m.normal_texture.texture = brick_normal_;
+  }
+  scene_.materials.push_back(std::move(m));
+  id = MaterialId(scene_.materials.size() - 1);
+  return id;
+}
+
+MeshId Palette::mesh(GeometryId geometry, Look look, const char* name) {
+  const MaterialId paint = material(look);
+  scene_.meshes.push_back({name, {{geometry, paint}}});
+  return MeshId(scene_.meshes.size() - 1);
+}
+
+MeshId Palette::box(Look look) {
+  MeshId& id = boxes_[static_cast<std::size_t>(look)];
+  if (!id.valid()) id = mesh(box_, look, paint_of(look).name);
+  return id;
+}
+
+MeshId Palette::ground(Look look, const glm::dvec2& size_m, double repeat_m) {
+  const MeshId id = mesh(box_, look, paint_of(look).name);
+  if (!noise_.valid()) noise_ = texture(noise_image(), kRepeat);
+  TextureUse& use = scene_.materials[material(look).value].base_color_texture;
+  use.texture = noise_;
+  // The top shows the atlas's bed region, half the texture wide and high.
+  const glm::dvec2 bed(kBed.hi - kBed.lo);
+  use.uv_scale = glm::vec2(size_m / repeat_m / bed);
+  return id;
+}
+
+}  // namespace scenegen::gen

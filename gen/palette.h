@@ -1,0 +1,58 @@
+// Materials of generated scenes, and the meshes (one geometry x one material) made of them, added to the
+// scene when first used.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "gen/layout.h"
+#include "scene/scene.h"
+
+namespace scenegen::gen {
+
+enum class Look : std::uint8_t {
+  brick_red,
+  brick_dark,
+  brick_pale,
+  plaster,
+  stone,
+  paint,
+  glass,
+  door,
+  tile_red,
+  tile_brown,
+  gravel,
+  pavement,
+  street,
+  grass,
+  cargo,
+};
+constexpr std::size_t kLooks = 15;
+
+/// What a part of a kind is made of; bricks and tiles have several looks, of which this is the first.
+[[nodiscard]] Look look_of(PartKind kind);
+
+class Palette {
+ public:
+  Palette(Scene& scene, Geometry box, const glm::ivec3& brick_mm);
+
+  /// Mesh of the unit box (or of `geometry`) in a look.
+  MeshId box(Look look);
+  MeshId mesh(GeometryId geometry, Look look, const char* name);
+  /// Ground and streets: the noise texture repeats every `repeat_m` over a top of `size_m`.
+  MeshId ground(Look look, const glm::dvec2& size_m, double repeat_m);
+
+ private:
+  MaterialId material(Look look);
+  TextureId texture(Image image, int wrap);
+  void add_brick_textures();
+
+  Scene& scene_;
+  glm::ivec3 brick_mm_;
+  GeometryId box_;
+  std::array<MaterialId, kLooks> materials_;
+  std::array<MeshId, kLooks> boxes_;
+  TextureId brick_color_, brick_normal_, noise_;
+};
+
+}  // namespace scenegen::gen
