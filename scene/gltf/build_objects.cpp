@@ -1,0 +1,420 @@
+// Nodes -> frames, objects, cameras.
+#include <algorithm>
+#include <map>
+
+#include "scene/gltf/build.h"
+#include "scene/gltf/names.h"
+#include "scene/limits.h"
+
+namespace scenegen::gltf::reading {
+
+namespace {
+
+constexpr std::uint8_t kInScene = 1, kUsed = 2, kUsedBelow = 4, kOwnFrame = 8, kLook = 16;
+
+class ObjectBuilder {
+ public:
+  ObjectBuilder(Document& document, Data& data, const Hierarchy& hierarchy, const Motions& motions,
+                VisibilityTable& visibility, Scene& scene)
+      : document_(document),
+        data_(data),
+        hierarchy_(hierarchy),
+        motions_(motions),
+        visibility_(visibility),
+        scene_(scene) {}
+  Origins build();
+
+ private:
+  [[nodiscard]] const NodeDetail* detail(std::uint32_t node) const {
+    const std::uint32_t i = document_.nodes[node].detail;
+    return i == kNone ? nullptr : &document_.node_details[i];
+  }
+  [[nodiscard]] const NodeMotion* motion(std::uint32_t node) const {
+    if (motions_.of_node.empty() || motions_.of_node[node] == kNone) return nullptr;
+    return &motions_.motions[motions_.of_node[node]];
+  }
+  /// An object of ours whose meshes are its children's (docs/FORMAT.md 5).
+  [[nodiscard]] bool has_looks(std::uint32_t node) const {
+    const NodeDetail* const d = detail(node);
+    return document_.ours && d != nullptr && d->mesh != kNone && document_.nodes[node].mesh == kNone;
+  }
+  [[nodiscard]] bool instanced(std::uint32_t node) const {
+    const NodeDetail* const d = detail(node);
+    return d != nullptr && d->instanced;
+  }
+  [[nodiscard]] bool is_object(std::uint32_t node) const {
+    return (flags_[node] & kLook) == 0 && (document_.nodes[node].mesh != kNone || has_looks(node));
+  }
+  [[nodiscard]] Place node_place(std::uint32_t node) const { return nodes_.at(node); }
+
+  void mark_used();
+  std::uint32_t own_visibility(std::uint32_t node);
+  void place_nodes();
+  void add_frame(std::uint32_t node, FrameId parent);
+  std::uint64_t instance_count(std::uint32_t node);
+  std::uint64_t count_objects();
+  void add_objects(std::uint64_t count);
+  void add_instances(std::uint32_t node);
+  void put(std::uint64_t id, std::uint32_t node, std::uint32_t instance, const Transform& transform);
+  std::uint64_t next_id(std::uint32_t given, const Place& at);
+  void add_looks(std::uint32_t node, ObjectId object);
+  void add_cameras();
+  void add_names();
+  void finish_visibility();
+
+  Document& document_;
+  Data& data_;
+  const Hierarchy& hierarchy_;
+  const Motions& motions_;
+  VisibilityTable& visibility_;
+  Scene& scene_;
+  Place root_;
+  Place nodes_ = root_.key("nodes");
+  std::vector<std::uint8_t> flags_;
+  std::vector<FrameId> frame_;          ///< by node: of its children, and of itself
+  std::vector<std::uint32_t> visible_;  ///< by node, ancestors included
+  bool explicit_ids_ = false;
+  std::uint64_t next_ = 0;
+  std::vector<bool> taken_;
+  Origins origins_;
+  std::vector<std::uint32_t> object_visibility_;  ///< of the VisibilityTable
+  std::map<std::vector<float>, TrackId> mesh_tracks_;
+};
+
+void ObjectBuilder::mark_used() {
+  flags_.assign(document_.nodes.size(), 0);
+  for (const std::uint32_t node : hierarchy_.order) {
+    flags_[node] |= kInScene;
+    if (!has_looks(node)) continue;
+    const Node& owner = document_.nodes[node];
+    for (std::uint32_t k = 0; k < owner.child_count; ++k) {
+      const std::uint32_t child = document_.children[owner.first_child + k];
+      const NodeDetail* const d = detail(child);
+      if (d != nullptr && d->look != kNone && document_.nodes[child].mesh != kNone) flags_[child] |= kLook;
+    }
+  }
+  for (std::size_t i = hierarchy_.order.size(); i-- > 0;) {
+    const std::uint32_t node = hierarchy_.order[i];
+    if (is_object(node) || document_.nodes[node].camera != kNone) flags_[node] |= kUsed;
+    const std::uint32_t parent = hierarchy_.parent[node];
+    if ((flags_[node] & kUsed) != 0 && parent != kNone) flags_[parent] |= kUsed | kUsedBelow;
+  }
+}
+
+std::uint32_t ObjectBuilder::own_visibility(std::uint32_t node) {
+  const Node& n = document_.nodes[node];
+  std::uint32_t out = n.visible ? VisibilityTable::kAlways : visibility_.never();
+  if (const NodeMotion* const m = motion(node); m != nullptr) {
+    if (m->pointer_visibility != kNone) out = m->pointer_visibility;  // replaces the value at rest
+    out = visibility_.both(out, m->scale_visibility, node_place(node));
+  }
+  return out;
+}
+
+void ObjectBuilder::add_frame(std::uint32_t node, FrameId parent) {
+  const Node& n = document_.nodes[node];
+  const FrameId id(scene_.frames.size());
+  Frame& frame = scene_.frames.emplace_back();
+  frame.name = n.name;
+  frame.parent = parent;
+  frame.local = n.local;
+  if (const NodeDetail* const d = detail(node); d != nullptr && d->has_matrix) {
+    frame.has_matrix = true;
+    frame.matrix = d->matrix;
+  }
+  if (const NodeMotion* const m = motion(node); m != nullptr) {
+    for (const std::uint32_t track : {m->translation, m->rotation, m->scale}) {
+      if (track < NodeMotion::kConstant) scene_.frame_tracks.push_back({id, TrackId(track)});
+    }
+  }
+  frame_[node] = id;
+  flags_[node] |= kOwnFrame;
+}
+
+void ObjectBuilder::place_nodes() {
+  frame_.assign(document_.nodes.size(), FrameId());
+  visible_.assign(document_.nodes.size(), VisibilityTable::kAlways);
+  for (const std::uint32_t node : hierarchy_.order) {
+    if ((flags_[node] & kUsed) == 0) continue;
+    Node& n = document_.nodes[node];
+    const std::uint32_t parent = hierarchy_.parent[node];
+    const FrameId outer = parent == kNone ? FrameId() : frame_[parent];
+    const std::uint32_t above = parent == kNone ? VisibilityTable::kAlways : visible_[parent];
+    visible_[node] = visibility_.both(above, own_visibility(node), node_place(node));
+    frame_[node] = outer;
+    bool matrix = false;
+    if (n.detail != kNone && document_.node_details[n.detail].has_matrix) {
+      NodeDetail& d = document_.node_details[n.detail];
+      d.has_matrix = !decompose(d.matrix, n.local);
+      matrix = d.has_matrix;
+      if (matrix) n.local = Transform();
+    }
+    const NodeMotion* const m = motion(node);
+    const bool moves = m != nullptr && m->moves();
+    const bool bare = n.local == Transform();
+    if (moves || matrix || (!bare && ((flags_[node] & kUsedBelow) != 0 || instanced(node))))
+      add_frame(node, outer);
+  }
+}
+
+std::uint64_t ObjectBuilder::instance_count(std::uint32_t node) {
+  const NodeDetail& d = *detail(node);
+  const Place here = node_place(node);
+  const Place extensions = here.key("extensions");
+  const Place extension = extensions.key("EXT_mesh_gpu_instancing");
+  const Place at = extension.key("attributes");
+  std::uint64_t count = 0;
+  const auto same = [&](std::uint32_t accessor, std::string_view name) {
+    if (accessor == kNone) return;
+    const std::uint64_t given = data_.accessor(accessor, at.key(name)).count;
+    if (count != 0 && given != count) {
+      reject(at.key(name),
+             std::to_string(given) + " instances, but another attribute has " + std::to_string(count));
+    }
+    count = given;
+  };
+  same(d.translation, "TRANSLATION");
+  same(d.rotation, "ROTATION");
+  same(d.scale, "SCALE");
+  if (document_.ours) same(d.object_id, "_OBJECT_ID");
+  if (count == 0) reject(at, "none of TRANSLATION, ROTATION, SCALE");
+  return count;
+}
+
+std::uint64_t ObjectBuilder::count_objects() {
+  std::uint64_t count = 0;
+  for (std::uint32_t node = 0; node < flags_.size(); ++node) {
+    if ((flags_[node] & kUsed) == 0 || !is_object(node)) continue;
+    const NodeDetail* const d = detail(node);
+    const bool many = instanced(node);
+    if (document_.ours && d != nullptr && (d->object != kNone || (many && d->object_id != kNone)))
+      explicit_ids_ = true;
+    const std::uint64_t here = many ? instance_count(node) : 1;
+    if (here > limits::kMaxObjects - count) {
+      reject(node_place(node), "more than " + std::to_string(limits::kMaxObjects) + " objects");
+    }
+    if (many) data_.budget().take(here * 64, node_place(node));  // a Scene has about as much for each object
+    if (many && origins_.instance.empty()) origins_.instance.resize(1);
+    count += here;
+  }
+  return count;
+}
+
+std::uint64_t ObjectBuilder::next_id(std::uint32_t given, const Place& at) {
+  if (!explicit_ids_) return next_++;
+  if (given == kNone)
+    reject(at, "an object without an index (extras.scenegen.object) among others that have one");
+  check_index(given, taken_.size(), "objects", at);
+  if (taken_[given]) reject(at, "a second object with index " + std::to_string(given));
+  taken_[given] = true;
+  return given;
+}
+
+void ObjectBuilder::put(std::uint64_t id, std::uint32_t node, std::uint32_t instance,
+                        const Transform& transform) {
+  const Node& n = document_.nodes[node];
+  scene_.objects.frame_from_object[id] = transform;
+  scene_.objects.frame[id] = frame_[node];
+  scene_.objects.mesh[id] = MeshId(n.mesh != kNone ? n.mesh : detail(node)->mesh);
+  object_visibility_[id] = visible_[node];
+  origins_.node[id] = node;
+  if (!origins_.instance.empty()) origins_.instance[id] = instance;
+}
+
+void ObjectBuilder::add_instances(std::uint32_t node) {
+  const NodeDetail& d = *detail(node);
+  const Place here = node_place(node);
+  const Place extensions = here.key("extensions");
+  const Place extension = extensions.key("EXT_mesh_gpu_instancing");
+  const Place at = extension.key("attributes");
+  const std::uint64_t count = instance_count(node);
+  std::vector<float> translation, rotation, scale;
+  std::vector<std::uint32_t> ids;
+  if (d.translation != kNone) translation = data_.floats(d.translation, 3, at.key("TRANSLATION"));
+  if (d.rotation != kNone) rotation = data_.floats(d.rotation, 4, at.key("ROTATION"));
+  if (d.scale != kNone) scale = data_.floats(d.scale, 3, at.key("SCALE"));
+  if (explicit_ids_ && d.object_id != kNone) ids = data_.integers(d.object_id, at.key("_OBJECT_ID"));
+  for (std::uint64_t i = 0; i < count; ++i) {
+    Transform transform;
+    if (!translation.empty())
+      transform.translation_m = {translation[3 * i], translation[3 * i + 1], translation[3 * i + 2]};
+    if (!scale.empty()) transform.scale = {scale[3 * i], scale[3 * i + 1], scale[3 * i + 2]};
+    if (!rotation.empty()) {
+      const float* const q = &rotation[4 * i];
+      transform.rotation = unit_rotation({q[0], q[1], q[2], q[3]}, at.key("ROTATION"));
+    }
+    const std::uint64_t id = next_id(ids.empty() ? kNone : ids[i], at.key("_OBJECT_ID"));
+    put(id, node, static_cast<std::uint32_t>(i), transform);
+  }
+}
+
+void ObjectBuilder::add_objects(std::uint64_t count) {
+  scene_.objects.frame_from_object.resize(count);
+  scene_.objects.frame.resize(count);
+  scene_.objects.mesh.resize(count);
+  scene_.objects.visibility.resize(count);
+  object_visibility_.resize(count);
+  origins_.node.resize(count);
+  if (!origins_.instance.empty()) origins_.instance.resize(count);
+  if (explicit_ids_) taken_.resize(count);
+  for (std::uint32_t node = 0; node < flags_.size(); ++node) {
+    if ((flags_[node] & kUsed) == 0 || !is_object(node)) continue;
+    const Node& n = document_.nodes[node];
+    const NodeDetail* const d = detail(node);
+    const Place at = node_place(node);
+    check_index(n.mesh != kNone ? n.mesh : d->mesh, scene_.meshes.size(), "meshes", at.key("mesh"));
+    if (instanced(node)) {
+      add_instances(node);
+      continue;
+    }
+    const std::uint64_t id = next_id(d == nullptr ? kNone : d->object, at);
+    put(id, node, 0, (flags_[node] & kOwnFrame) != 0 ? Transform() : n.local);
+    if (has_looks(node)) add_looks(node, ObjectId(id));
+  }
+}
+
+/// The children's visibility tracks, of which exactly one shows at any time, become one mesh track.
+void ObjectBuilder::add_looks(std::uint32_t node, ObjectId object) {
+  struct Event {
+    float time_s;
+    std::uint32_t child;
+    std::uint8_t shown;
+  };
+  const Node& n = document_.nodes[node];
+  std::vector<Event> events;
+  std::vector<bool> showing(n.child_count);
+  std::uint64_t shown_count = 0;
+  std::uint64_t shown_sum = 0;  // of child numbers: the child, when one is shown
+  for (std::uint32_t k = 0; k < n.child_count; ++k) {
+    const std::uint32_t child = document_.children[n.first_child + k];
+    if ((flags_[child] & kLook) == 0) continue;
+    check_index(document_.nodes[child].mesh, scene_.meshes.size(), "meshes", node_place(child).key("mesh"));
+    const std::uint32_t id = own_visibility(child);
+    const auto times = visibility_.times_s(id);
+    const auto values = visibility_.shown(id);
+    for (std::size_t i = 0; i < times.size(); ++i) events.push_back({times[i], k, values[i]});
+    showing[k] = id == VisibilityTable::kAlways || values.front() != 0;
+    if (showing[k]) {
+      ++shown_count;
+      shown_sum += k;
+    }
+  }
+  std::stable_sort(events.begin(), events.end(),
+                   [](const Event& a, const Event& b) { return a.time_s < b.time_s; });
+  std::vector<float> times, values;
+  for (std::size_t i = 0; i < events.size();) {
+    const float now = events[i].time_s;
+    for (; i < events.size() && events[i].time_s == now; ++i) {
+      const bool shown = events[i].shown != 0;
+      if (shown == showing[events[i].child]) continue;
+      showing[events[i].child] = shown;
+      shown_count += shown ? 1 : -1;
+      shown_sum += shown ? events[i].child : -std::uint64_t{events[i].child};
+    }
+    if (shown_count != 1) {
+      reject(node_place(node), std::to_string(shown_count) + " looks are shown at " + std::to_string(now) +
+                                   " s; wanted exactly one");
+    }
+    times.push_back(now);
+    values.push_back(static_cast<float>(document_.nodes[document_.children[n.first_child + shown_sum]].mesh));
+  }
+  if (times.empty() && shown_count > 1)
+    reject(node_place(node), "several looks are shown; wanted exactly one");
+  if (times.empty() && shown_count == 0) return;  // no looks at all
+  if (times.empty()) {
+    times.push_back(0.0F);
+    values.push_back(static_cast<float>(document_.nodes[document_.children[n.first_child + shown_sum]].mesh));
+  }
+  std::vector<float> key = times;
+  key.insert(key.end(), values.begin(), values.end());
+  const auto [entry, fresh] = mesh_tracks_.emplace(std::move(key), TrackId());
+  if (fresh) entry->second = scene_.add_track(Property::mesh, Interpolation::step, times, values);
+  scene_.object_mesh_tracks.push_back({object, entry->second});
+}
+
+void ObjectBuilder::add_cameras() {
+  for (std::uint32_t node = 0; node < flags_.size(); ++node) {
+    const Node& n = document_.nodes[node];
+    if ((flags_[node] & kUsed) == 0 || n.camera == kNone) continue;
+    check_index(n.camera, document_.cameras.size(), "cameras", node_place(node).key("camera"));
+    Camera camera = document_.cameras[n.camera];
+    if (!document_.ours && !n.name.empty())
+      camera.name = n.name;  // foreign cameras are mostly told apart by their nodes
+    camera.frame = frame_[node];
+    if ((flags_[node] & kOwnFrame) == 0) camera.frame_from_camera = n.local;
+    scene_.cameras.push_back(std::move(camera));
+  }
+}
+
+void ObjectBuilder::add_names() {
+  const std::size_t count = scene_.objects.size();
+  UniqueNames names(scene_.objects.names, count);
+  const std::uint32_t shown = document_.scene == kNone ? 0 : document_.scene;
+  if (document_.ours && !document_.scenes.empty() && document_.names[shown].view != kNone) {
+    const Place scenes = root_.key("scenes");
+    const Place scene = scenes.at(shown);
+    const Place extras = scene.key("extras");
+    const Place ours = extras.key("scenegen");
+    const Place at = ours.key("names");
+    if (document_.names[shown].count != count) {
+      reject(at.key("count"), std::to_string(document_.names[shown].count) + " names of " +
+                                  std::to_string(count) + " objects");
+    }
+    const NameTable table = decode_names(document_.names[shown], data_, at);
+    scene_.objects.names.reserve(count, table.byte_count());
+    for (std::size_t i = 0; i < count; ++i) names.add(table[i]);
+    return;
+  }
+  std::size_t bytes = 0;
+  for (const std::uint32_t node : origins_.node) bytes += document_.nodes[node].name.size();
+  if (origins_.instance.empty()) scene_.objects.names.reserve(count, bytes);
+  std::string made;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t node = origins_.node[i];
+    const std::string_view name = document_.nodes[node].name;
+    const bool many = instanced(node);
+    if (!many && !name.empty()) {
+      names.add(name);
+      continue;
+    }
+    made = name.empty() ? "node_" + std::to_string(node) : std::string(name);
+    if (many) made += "/" + std::to_string(origins_.instance[i]);
+    data_.budget().take(made.size(), root_);
+    names.add(made);
+  }
+}
+
+void ObjectBuilder::finish_visibility() {
+  std::vector<TrackId> track(visibility_.size());
+  std::vector<float> values;
+  for (std::size_t i = 0; i < object_visibility_.size(); ++i) {
+    const std::uint32_t id = object_visibility_[i];
+    if (id == VisibilityTable::kAlways) continue;
+    if (!track[id].valid()) {
+      const auto shown = visibility_.shown(id);
+      values.assign(shown.begin(), shown.end());
+      track[id] =
+          scene_.add_track(Property::visibility, Interpolation::step, visibility_.times_s(id), values);
+    }
+    scene_.objects.visibility[i] = track[id];
+  }
+}
+
+Origins ObjectBuilder::build() {
+  mark_used();
+  place_nodes();
+  add_objects(count_objects());
+  add_cameras();
+  add_names();
+  finish_visibility();
+  return std::move(origins_);
+}
+
+}  // namespace
+
+Origins build_objects(Document& document, Data& data, const Hierarchy& hierarchy, const Motions& motions,
+                      VisibilityTable& visibility, Scene& scene) {
+  return ObjectBuilder(document, data, hierarchy, motions, visibility, scene).build();
+}
+
+}  // namespace scenegen::gltf::reading
