@@ -47,13 +47,13 @@ Result<void> check_bricks(const TownOptions& o) {
     return usage("--brick", "width " + number(o.brick_m.y) + " is more than the length " +
                                 number(o.brick_m.x) + "; nearest " + number(o.brick_m.x));
   }
-  if (auto r = in_range("--floor-height", "courses", o.floor_courses, 1, 1000); !r) return r;
+  if (auto r = in_range("--floor-courses", "courses", o.floor_courses, 1, 1000); !r) return r;
   if (auto r = in_range("--floors", "floors", o.floors, 1, 1000); !r) return r;
   // Opposite walls and one brick between them.
   const double least =
       std::ceil((2.0 * whole_mm(o.brick_m.y) + whole_mm(o.brick_m.x, 2)) / whole_mm(o.brick_m.x, 2));
-  if (auto r = in_range("--building", "width in bricks", o.building_bricks.x, least, 10'000); !r) return r;
-  return in_range("--building", "length in bricks", o.building_bricks.y, least, 10'000);
+  if (auto r = in_range("--building-size", "width in bricks", o.building_bricks.x, least, 10'000); !r) return r;
+  return in_range("--building-size", "length in bricks", o.building_bricks.y, least, 10'000);
 }
 
 /// Windows in half bricks and courses; a course remains for the lintel.

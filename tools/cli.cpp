@@ -12,6 +12,7 @@
 #include <iostream>
 #include <iterator>
 #include <new>
+#include <system_error>
 
 #include "tools/output.h"
 
@@ -75,6 +76,7 @@ struct Options::State {
     return names;
   }
   Result<void> tokenize(std::span<const std::string> arguments);
+  [[nodiscard]] Result<void> check_values() const;
   Result<void> take_positionals();
   Result<void> take_options();
   Result<void> read_config();
@@ -161,7 +163,8 @@ namespace {
 Error unexpected_argument(const std::vector<std::string>& extras, const std::vector<std::string>& known) {
   const auto first_option = std::find_if(extras.begin(), extras.end(),
                                          [](const std::string& s) { return s.size() > 1 && s[0] == '-'; });
-  if (first_option == extras.end()) return {ErrorKind::usage, extras.front(), "unexpected argument"};
+  if (first_option == extras.end())
+    return {ErrorKind::usage, "", "unexpected argument '" + extras.front() + "'"};
   const std::string name = first_option->substr(0, first_option->find('='));
   const std::string nearest = nearest_word(name, known);
   return {
@@ -193,14 +196,23 @@ Result<void> Options::State::take_positionals() {
   return {};
 }
 
+/// "--grid --seed 3": the second option was taken for the value of the first.
+Result<void> Options::State::check_values() const {
+  for (const Group& group : groups) {
+    for (const Option& option : group.options) {
+      if (option.handle->count() == 0 || !option.handle->results().back().starts_with("--")) continue;
+      return fail(ErrorKind::usage, option.long_name,
+                  "needs a value ('" + option.handle->results().back() + "' is an option)");
+    }
+  }
+  return {};
+}
+
 Result<void> Options::State::take_options() {
   for (Group& group : groups) {
     for (Option& option : group.options) {
       if (option.handle->count() == 0) continue;
       const std::string& text = option.handle->results().back();
-      if (text.starts_with("--")) {
-        return fail(ErrorKind::usage, option.long_name, "needs a value ('" + text + "' is an option)");
-      }
       if (auto taken = take_text(option, text, option.long_name); !taken) return taken;
     }
   }
@@ -280,6 +292,7 @@ Result<Action> Options::parse(std::span<const std::string> arguments) {
   };
   if (wanted("--help")) return Action::help;
   if (wanted("--version")) return Action::version;
+  if (auto done = s.check_values(); !done) return forward_error(done);
   if (const auto extras = s.app.remaining(); !extras.empty()) {
     return tl::unexpected<Error>(unexpected_argument(extras, s.long_names(0)));
   }
@@ -355,8 +368,10 @@ void append_entry(std::string& out, std::string left, const std::string& right) 
 
 std::string described(const Option& option) {
   std::string facts;
-  if (!option.is_flag() && !option.default_text.empty()) facts = "default: " + option.default_text;
-  if (!option.value.range.empty()) facts += (facts.empty() ? "" : "; ") + option.value.range;
+  if (!option.value.range.empty()) facts = option.value.range;
+  if (!option.is_flag() && !option.default_text.empty()) {
+    facts += (facts.empty() ? "default: " : "; default: ") + option.default_text;
+  }
   return option.help + (facts.empty() ? "" : " (" + facts + ")");
 }
 
@@ -369,7 +384,7 @@ std::string heading(const std::string& title, bool colored) {
 std::string Options::help(bool colored) const {
   const State& s = *state_;
   std::string out;
-  for (const std::string& line : wrap(s.program + " " SCENEGEN_VERSION ": " + s.summary, kLineWidth)) {
+  for (const std::string& line : wrap(s.program + ": " + s.summary, kLineWidth)) {
     out += line + "\n";
   }
   out += heading("Usage:", colored);
@@ -390,7 +405,10 @@ std::string Options::help(bool colored) const {
 
 int report_error(const Error& error) {
   std::string line = error.str();
-  std::replace(line.begin(), line.end(), '\n', ' ');
+  // Names of files are other people's text: no line breaks, no escape sequences.
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; },
+      '?');
   std::fprintf(stderr, colored(2) ? "\x1b[1;31merror:\x1b[0m %s\n" : "error: %s\n", line.c_str());
   return static_cast<int>(error.kind);
 }
@@ -403,6 +421,8 @@ int report_exception(const std::exception_ptr& exception) {
     (void)std::fputs("error: internal error\n", stderr);
   } catch (const std::bad_alloc&) {
     (void)std::fputs("error: out of memory (a smaller scene needs less)\n", stderr);
+  } catch (const std::system_error& error) {  // no more threads
+    (void)std::fprintf(stderr, "error: the system refused: %s\n", error.what());
   } catch (const std::exception& error) {
     (void)std::fprintf(stderr, "error: internal error: %s\n", error.what());
   } catch (...) {

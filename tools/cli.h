@@ -60,6 +60,7 @@ template <class Enum>
 [[nodiscard]] Value choice_value(Enum& target, std::vector<std::pair<std::string, Enum>> choices,
                                  std::string form = "WORD") {
   std::vector<std::string> words;
+  words.reserve(choices.size());
   for (const auto& choice : choices) words.push_back(choice.first);
   auto parse = [&target, choices, words](std::string_view text) -> Result<void> {
     for (const auto& [word, value] : choices) {

@@ -40,8 +40,8 @@ std::string csv_cell(const ordered_json& value) {
 
 void append_csv(std::string& out, const std::string& key, const ordered_json& value) {
   if (value.is_structured()) {
-    for (const auto& [name, member] : value.items())
-      append_csv(out, key.empty() ? name : key + "/" + name, member);
+    const std::string parent = key.empty() ? key : key + "/";
+    for (const auto& [name, member] : value.items()) append_csv(out, parent + name, member);
   } else {
     out += csv_cell(key) + "," + csv_cell(value) + "\n";
   }
@@ -178,14 +178,10 @@ std::string Table::str(Format format) const {
 
 namespace {
 
-std::string reason(int error_number) {
-  std::string text = std::strerror(error_number);  // NOLINT(concurrency-mt-unsafe): one thread writes files
-  if (!text.empty() && text[0] >= 'A' && text[0] <= 'Z') text[0] = static_cast<char>(text[0] - 'A' + 'a');
-  return text;
-}
-
 tl::unexpected<Error> cannot_write(const std::string& path, int error_number) {
-  return fail(ErrorKind::io, path, "cannot be written: " + reason(error_number));
+  return fail(
+      ErrorKind::io, path,
+      "cannot be written: " + std::string(std::strerror(error_number)));  // NOLINT(concurrency-mt-unsafe)
 }
 
 /// 0 or the error number.

@@ -87,7 +87,11 @@ Result<std::vector<std::string_view>> split_size(std::string_view text, std::siz
 
 std::string shortest(double value) {
   std::array<char, 32> buffer{};
-  const auto [end, code] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  const double size = std::abs(value);
+  const bool plain = size == 0 || (size >= 1e-6 && size < 1e15);
+  char* const limit = buffer.data() + buffer.size();
+  const auto [end, code] = plain ? std::to_chars(buffer.data(), limit, value, std::chars_format::fixed)
+                                 : std::to_chars(buffer.data(), limit, value);
   return {buffer.data(), end};
 }
 

@@ -21,7 +21,8 @@ namespace scenegen::tools {
 [[nodiscard]] Result<std::vector<std::string_view>> split_size(std::string_view text, std::size_t count,
                                                                std::string_view form);
 
-/// Shortest text that reads back as the same double: "0.1", "1e-05".
+/// Shortest digits that read back as the same double: "0.1", "1000000"; with an exponent below 1e-6 and from
+/// 1e15 on.
 [[nodiscard]] std::string shortest(double value);
 
 /// The candidate that `text` was most likely meant to be, or "" when none is near: optimal string alignment

@@ -1,0 +1,212 @@
+// Every kind of wrong call: one line, the right exit code, nothing left behind.
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "tests/tools/process.h"
+
+using namespace scenegen::test;
+
+namespace {
+
+struct Case {
+  const char* arguments;
+  int code;
+  const char* line;  ///< stderr without "error: " and the newline; begins with "~": a part of it
+};
+
+bool one_error_line(const std::string& text) {
+  return text.starts_with("error: ") && text.ends_with("\n") &&
+         std::count(text.begin(), text.end(), '\n') == 1;
+}
+
+void check_case(const Case& wrong, const ProcessResult& result) {
+  INFO("scenegen " << wrong.arguments << "\n" << result.err);
+  CHECK(result.signal == 0);
+  CHECK(result.code == wrong.code);
+  CHECK(result.out.empty());
+  REQUIRE(one_error_line(result.err));
+  const std::string line = result.err.substr(7, result.err.size() - 8);
+  if (wrong.line[0] == '~') {
+    CHECK_THAT(line, Catch::Matchers::Contains(wrong.line + 1));
+  } else {
+    CHECK(line == wrong.line);
+  }
+}
+
+constexpr int kBad = 1;
+constexpr int kUsage = 2;
+constexpr int kIo = 3;
+
+const Case kWrongCalls[] = {
+    // Unknown words.
+    {"--curve hilber", kUsage,
+     "--curve: unknown value 'hilber' (did you mean 'hilbert'? one of: hilbert, morton, row-prime, none)"},
+    {"--curve peano", kUsage, "--curve: unknown value 'peano' (one of: hilbert, morton, row-prime, none)"},
+    {"--gird 4x4", kUsage, "--gird: unknown option (did you mean '--grid'?)"},
+    {"--gird=4x4", kUsage, "--gird: unknown option (did you mean '--grid'?)"},
+    {"--zzzzzz", kUsage, "--zzzzzz: unknown option (--help lists them)"},
+    {"-z", kUsage, "-z: unknown option (--help lists them)"},
+    {"inspct a.glb", kUsage, "unknown command 'inspct' (did you mean 'inspect'? one of: inspect, diff)"},
+    {"--grid 2x2 stray", kUsage, "unexpected argument 'stray'"},
+    {"--windows yes", kUsage, "--windows: unknown value 'yes' (one of: on, off)"},
+    {"--layout node", kUsage,
+     "--layout: unknown value 'node' (did you mean 'nodes'? one of: auto, nodes, groups, instances)"},
+    {"--visibility none", kUsage, "~--visibility: unknown value 'none' ("},
+    {"--format xml", kUsage, "--format: unknown value 'xml' (one of: table, json, csv)"},
+    {"--order +x+y", kUsage, "~--order: unknown value '+x+y' ("},
+    {"--order +x+x+y", kUsage, "~--order: unknown value '+x+x+y' ("},
+    // Missing values.
+    {"--coherence", kUsage, "--coherence: needs a value"},
+    {"--grid --seed 3", kUsage, "~--grid: needs a value"},
+    {"--seed=", kUsage, "--seed: needs a value"},
+    {"--quiet=3", kUsage, "--quiet: takes no value"},
+    {"inspect", kUsage, "missing FILE (usage: scenegen inspect FILE [options])"},
+    {"diff a.glb", kUsage, "missing B (usage: scenegen diff A B [options])"},
+    // Numbers.
+    {"--grid 0x4", kUsage, "--grid: 0x4 is out of range (1x1 to 1000x1000; nearest: 1x4)"},
+    {"--grid -1x4", kUsage, "--grid: -1x4 is out of range (1x1 to 1000x1000; nearest: 1x4)"},
+    {"--grid 1000000x1000000", kUsage,
+     "--grid: 1000000x1000000 is out of range (1x1 to 1000x1000; nearest: 1000x1000)"},
+    {"--grid 99999999999999999999x4", kUsage,
+     "--grid: 99999999999999999999x4 is out of range (1x1 to 1000x1000; nearest: 1000x4)"},
+    {"--grid 4", kUsage, "--grid: '4' is not of the form XxY"},
+    {"--grid 4x4x4", kUsage, "--grid: '4x4x4' is not of the form XxY"},
+    {"--grid 4x4.5", kUsage, "--grid: '4.5' is not a whole number"},
+    {"--coherence 1.2", kUsage, "--coherence: 1.2 is out of range (0 to 1; nearest: 1)"},
+    {"--coherence -0.1", kUsage, "--coherence: -0.1 is out of range (0 to 1; nearest: 0)"},
+    {"--coherence nan", kUsage, "--coherence: 'nan' is not a finite number"},
+    {"--interval inf", kUsage, "--interval: 'inf' is not a finite number"},
+    {"--interval 0", kUsage, "--interval: 0 is out of range (0.000001 to 1000000; nearest: 0.000001)"},
+    {"--hold 1e999", kUsage, "~--hold: '1e999' does not fit a number"},
+    {"--spacing 3m", kUsage, "--spacing: '3m' is not a number"},
+    {"--brick 0.5x0.25", kUsage, "--brick: '0.5x0.25' is not of the form LxWxH"},
+    {"--brick 0.5x0.25x-1", kUsage, "~--brick: 0.5x0.25x-1 is out of range"},
+    {"--seed -1", kUsage, "--seed: -1 is out of range (0 to 9007199254740991; nearest: 0)"},
+    {"--seed 1e3", kUsage, "--seed: '1e3' is not a whole number"},
+    {"--threads 257", kUsage, "--threads: 257 is out of range (0 to 256; nearest: 256)"},
+    {"--cells 1x1x1025", kUsage,
+     "--cells: 1x1x1025 is out of range (1x1x1 to 1024x1024x1024; nearest: 1x1x1024)"},
+    {"--cells 1024x1024x1024", kUsage, "~--cells: "},
+    {"--test-set 4", kUsage, "--test-set: 4 is out of range (5 to 48; nearest: 5)"},
+    {"--test-set 49", kUsage, "--test-set: 49 is out of range (5 to 48; nearest: 48)"},
+    // Contradictions.
+    {"--test-set 5 --grid 4x4", kUsage, "--grid: cannot be used with --test-set, which fixes the scene"},
+    {"--windows off --window 1x1", kUsage, "--window: cannot be used with --windows off"},
+    {"--extra-model sphere:8", kUsage, "--extra-model: needs --extras of 1 or more"},
+    {"--curve none --coherence 0.5", kUsage,
+     "--coherence: cannot be used with --curve none, which makes a static scene"},
+    {"--cells 1x1x1 --coherence 0.5", kUsage, "~--coherence: "},
+    {"-o - --format json", kUsage, "~--format: cannot be used with --output -"},
+    {"-o - --report -", kUsage, "~--report: cannot be used with --output -"},
+    // Too much.
+    {"--grid 1000x1000 --spacing 0 --floors 1000", kUsage, "~more than 100000000 objects"},
+    // Files.
+    {"-o town.obj", kUsage, "--output: 'town.obj' ends neither in .glb nor in .gltf (nearest: 'town.glb')"},
+    {"-o missing/town.glb", kIo, "missing/town.glb: cannot be written: No such file or directory"},
+    {"-o /dev/null/town.glb", kIo, "/dev/null/town.glb: cannot be written: Not a directory"},
+    {"-o .", kIo, ".: cannot be written: Is a directory"},
+    {"-o town/", kIo, "~town/: cannot be written: "},
+    {"--report missing/r.json", kIo, "missing/r.json: cannot be written: No such file or directory"},
+    {"--config missing.json", kIo, "missing.json: cannot be read"},
+    {"--extras 1 --extra-model sphere:0", kUsage, "~sphere:0"},
+    {"inspect missing.glb", kIo, "~missing.glb: "},
+    {"inspect .", kIo, "~.: "},
+    {"diff missing.glb missing.glb", kIo, "~missing.glb: "},
+};
+
+}  // namespace
+
+TEST_CASE("a wrong call is one line, the right exit code, and nothing else") {
+  const TemporaryFolder folder;
+  for (const Case& wrong : kWrongCalls) {
+    check_case(wrong, run(SCENEGEN_PROGRAM, words(wrong.arguments), {.folder = folder.path()}));
+    CHECK(folder.entries().empty());
+  }
+}
+
+TEST_CASE("a wrong config is located in its file") {
+  const TemporaryFolder folder;
+  const std::pair<const char*, Case> wrong_configs[] = {
+      {"{\"gird\": \"4x4\"}", {"", kUsage, "c.json: /gird: unknown option (did you mean 'grid'?)"}},
+      {"{\"grid\": \"0x4\"}",
+       {"", kUsage, "c.json: /grid: 0x4 is out of range (1x1 to 1000x1000; nearest: 1x4)"}},
+      {"{\"grid\": [4, 4]}", {"", kUsage, "c.json: /grid: is neither text, nor a number, nor true or false"}},
+      {"{\"config\": \"c.json\"}", {"", kUsage, "~c.json: /config: unknown option"}},
+      {"{\"coherence\": 1e400}", {"", kBad, "~c.json: "}},
+      {"[]", {"", kBad, "c.json: is not a JSON object"}},
+      {"{\"grid\": ", {"", kBad, "~c.json: parse error at line 1"}},
+      {"", {"", kBad, "~c.json: parse error"}},
+  };
+  for (const auto& [text, wrong] : wrong_configs) {
+    write_file(folder.file("c.json"), text);
+    INFO(text);
+    check_case(wrong, run(SCENEGEN_PROGRAM, {"--config", "c.json"}, {.folder = folder.path()}));
+    CHECK(folder.entries() == std::vector<std::string>{"c.json"});
+  }
+  write_file(folder.file("c.json"), std::string((1 << 20) + 1, ' '));
+  check_case({"", kBad, "c.json: is longer than 1 MiB: not a config file"},
+             run(SCENEGEN_PROGRAM, {"--config", "c.json"}, {.folder = folder.path()}));
+}
+
+TEST_CASE("arguments that are no text are refused") {
+  check_case({"", kUsage, "--extra-model: is not valid UTF-8"},
+             run(SCENEGEN_PROGRAM, {"--extras", "1", "--extra-model", "\xff\xfe"}));
+  check_case({"", kUsage, "~--curve: unknown value 'a?b'"}, run(SCENEGEN_PROGRAM, {"--curve", "a\nb"}));
+  check_case({"", kUsage, "~--grid: "}, run(SCENEGEN_PROGRAM, {"--grid", ""}));
+}
+
+TEST_CASE("a full disk is an error and leaves nothing behind") {
+  const TemporaryFolder folder;
+  for (const char* arguments :
+       {"-o town.glb", "-o town.gltf", "-o town.glb --layout nodes --visibility pointer"}) {
+    const ProcessResult result =
+        run(SCENEGEN_PROGRAM, words(arguments), {.folder = folder.path(), .most_file_bytes = 20'000});
+    check_case({arguments, kIo, "~town."}, result);
+    CHECK(folder.entries().empty());
+  }
+}
+
+TEST_CASE("a full disk under stdout is an error") {
+  ProcessOptions full;
+  full.stdout_path = "/dev/full";
+  for (const char* arguments :
+       {"-o -", "--help", "--version", "--dump-config", "--dry-run -q --format json"}) {
+    check_case({arguments, kIo, "~No space left on device"}, run(SCENEGEN_PROGRAM, words(arguments), full));
+  }
+}
+
+TEST_CASE("what was there before stays when writing fails") {
+  const TemporaryFolder folder;
+  write_file(folder.file("town.glb"), "before");
+  const ProcessResult result =
+      run(SCENEGEN_PROGRAM, {"-o", "town.glb"}, {.folder = folder.path(), .most_file_bytes = 20'000});
+  CHECK(result.code == kIo);
+  CHECK(read_file(folder.file("town.glb")) == "before");
+  CHECK(folder.entries() == std::vector<std::string>{"town.glb"});
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)  // their shadow memory is larger than any limit
+TEST_CASE("too little memory is one line, not a signal") {
+  const TemporaryFolder folder;
+  const ProcessResult result = run(SCENEGEN_PROGRAM, words("--grid 30x30 -o town.glb"),
+                                   {.folder = folder.path(), .most_memory_bytes = 200'000'000});
+  check_case({"--grid 30x30", kBad, "~memory"}, result);
+  CHECK(folder.entries().empty());
+}
+#endif
+
+TEST_CASE("a damaged file is one line") {
+  const TemporaryFolder folder;
+  REQUIRE(run(SCENEGEN_PROGRAM, {"-o", "town.glb", "-q"}, {.folder = folder.path()}).code == 0);
+  const std::string whole = read_file(folder.file("town.glb"));
+  for (const std::size_t kept : {std::size_t{0}, std::size_t{3}, std::size_t{12}, std::size_t{20},
+                                 whole.size() / 2, whole.size() - 1}) {
+    write_file(folder.file("cut.glb"), whole.substr(0, kept));
+    INFO("first " << kept << " bytes");
+    check_case({"inspect cut.glb", kBad, "~cut.glb"},
+               run(SCENEGEN_PROGRAM, {"inspect", "cut.glb"}, {.folder = folder.path()}));
+    check_case({"diff", kBad, "~cut.glb"},
+               run(SCENEGEN_PROGRAM, {"diff", "town.glb", "cut.glb"}, {.folder = folder.path()}));
+  }
+}

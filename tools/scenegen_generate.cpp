@@ -1,0 +1,240 @@
+// scenegen [options]: parameters -> scene -> appearance times -> file.
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+#include "gen/generate.h"
+#include "scene/gltf/write.h"
+#include "timeline/appearance.h"
+#include "timeline/statistics.h"
+#include "tools/memory.h"
+#include "tools/output.h"
+#include "tools/scenegen.h"
+#include "tools/scenegen_options.h"
+
+namespace scenegen::tools {
+
+namespace {
+
+/// What was made, or would be.
+struct Made {
+  gen::Prediction counts;
+  gltf::WriteReport file;
+  std::optional<AppearanceInfo> appearance;
+  std::vector<std::string> notes;
+  double seconds = 0;
+};
+
+bool is_folder(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::is_directory(path, ignored);
+}
+
+Result<void> check_output(const GenerateRequest& r) {
+  if (r.dry_run) return {};
+  if (r.output == "-") {
+    if (!terminal(1)) return {};
+    return fail(ErrorKind::usage, "--output",
+                "a .glb is not for a terminal; send stdout to a file or a program");
+  }
+  const std::filesystem::path path(r.output);
+  if (path.extension() != ".glb" && path.extension() != ".gltf" && path.has_filename() && !is_folder(path)) {
+    return fail(ErrorKind::usage, "--output",
+                "'" + r.output + "' ends neither in .glb nor in .gltf (nearest: '" +
+                    std::filesystem::path(path).replace_extension(".glb").string() + "')");
+  }
+  return check_output_file(r.output);
+}
+
+Result<void> check(const GenerateRequest& r, const Options& options) {
+  if (auto allowed = options.refuse(conflicts(r)); !allowed) return allowed;
+  if (auto writable = check_output(r); !writable) return writable;
+  if (r.report.empty() || r.report == "-") return {};
+  return check_output_file(r.report);
+}
+
+/// Refuses what would not fit: the kernel would end the process half way.
+Result<void> check_memory(std::uint64_t objects) {
+  constexpr std::uint64_t kBytesPerObject = 250;  // scene, times, grouping while writing (docs/BENCHMARKS.md)
+  const auto available = available_memory();
+  const std::uint64_t needed = objects * kBytesPerObject;
+  if (!available || needed <= *available) return {};
+  return fail(ErrorKind::bad_input, "",
+              human_count(objects) + " objects need about " + human_bytes(needed) + " of memory, " +
+                  human_bytes(*available) + " are free");
+}
+
+Result<gen::Prediction> predict(const GenerateRequest& r) {
+  return r.test_set != 0 ? gen::predict_test_set(static_cast<int>(r.test_set)) : gen::predict_town(r.town);
+}
+
+Result<gen::Generated> generate(const GenerateRequest& r) {
+  if (r.test_set == 0) return gen::generate_town(r.town);
+  return gen::generate_test_set(static_cast<int>(r.test_set), r.seed, r.town.threads);
+}
+
+Result<Made> make(const GenerateRequest& r, const std::vector<std::string>& arguments) {
+  const Stopwatch stopwatch;
+  auto predicted = predict(r);
+  if (!predicted) return forward_error(predicted);
+  if (auto fits = check_memory(predicted->objects); !fits) return forward_error(fits);
+
+  constexpr std::uint64_t kLongWork = 300'000;  // objects; about a third of a second
+  Progress progress("", 0, r.quiet || predicted->objects < kLongWork);
+  progress.stage("laying " + human_count(predicted->objects) + " objects");
+  auto generated = generate(r);
+  if (!generated) return forward_error(generated);
+  Scene& scene = generated->scene;
+
+  Made made;
+  made.counts = *predicted;
+  made.notes = std::move(generated->notes);
+  scene.info.generator = "scenegen " SCENEGEN_VERSION;
+  scene.info.seed = r.seed;
+  scene.info.arguments = arguments;
+  if (r.curve) {
+    progress.stage("giving times");
+    auto appearance = timeline::assign_appearance(scene, r.appearance, generated->exempt);
+    if (!appearance) return forward_error(appearance);
+    made.appearance = *appearance;
+  }
+  progress.stage(r.dry_run ? "measuring" : "writing " + r.output);
+  auto file = r.dry_run ? gltf::predict(scene, r.output, r.file) : gltf::write(scene, r.output, r.file);
+  if (!file) return forward_error(file);
+  made.file = std::move(*file);
+  made.notes.insert(made.notes.end(), made.file.notes.begin(), made.file.notes.end());
+  if (!r.dry_run && (r.format != Format::table || !r.report.empty())) {
+    const timeline::Statistics counted = timeline::statistics(scene, r.town.threads);
+    made.counts = {counted.objects, counted.vertices, counted.triangles};
+  }
+  made.seconds = stopwatch.seconds();
+  return made;
+}
+
+double objects_per_group(const Made& made) {
+  return made.file.instance_groups == 0
+             ? 0
+             : static_cast<double>(made.counts.objects) / static_cast<double>(made.file.instance_groups);
+}
+
+std::uint64_t moments(const Made& made) {
+  return made.appearance ? made.appearance->moments : 0;
+}
+
+/// "scene.glb  5.1 MB  38 016 objects  4 096 moments  coherence 0.951  locality 13.3  seed 1  0.21 s"
+std::string finished_line(const GenerateRequest& r, const Made& made) {
+  std::string line = (r.output == "-" ? "stdout" : r.output) + (r.dry_run ? "  (not written)  " : "  ") +
+                     human_bytes(made.file.bytes) + "  " + human_count(made.counts.objects) + " objects";
+  if (r.dry_run) {
+    line += "  " + human_count(made.counts.vertices) + " vertices  " + human_count(made.counts.triangles) +
+            " triangles";
+  }
+  line += "  " + human_count(moments(made)) + " moments";
+  if (made.appearance) {
+    line += "  coherence " + human_real(made.appearance->coherence_measured, 3) + "  locality " +
+            human_real(made.appearance->locality_cells, 1);
+  }
+  line += "  seed " + std::to_string(r.seed) + "  " + human_seconds(made.seconds) + "\n";
+  if (made.file.layout == gltf::Layout::instances) {
+    line += "instances: " + human_count(made.file.instance_groups) + " groups, " +
+            human_real(objects_per_group(made), 1) + " objects per group, " +
+            human_count(made.file.single_object_groups) + " groups of one\n";
+  }
+  return line;
+}
+
+Report report(const GenerateRequest& r, const Made& made, const std::vector<std::string>& arguments) {
+  Report out("scenegen/report", 1);
+  const auto add = [&out](std::string key, nlohmann::ordered_json value) {
+    out.add({std::move(key), {}, std::move(value), {}});
+  };
+  add("command", "generate");
+  add("dryRun", r.dry_run);
+  add("output", r.output);
+  add("objects", made.counts.objects);
+  add("vertices", made.counts.vertices);
+  add("triangles", made.counts.triangles);
+  add("moments", moments(made));
+  add("bytes", made.file.bytes);
+  add("jsonBytes", made.file.json_bytes);
+  add("seed", r.seed);
+  if (made.appearance) {
+    add("coherence", made.appearance->coherence_measured);
+    add("coherenceGiven", made.appearance->coherence_given);
+    add("displaced", made.appearance->displaced_objects);
+    add("timed", made.appearance->timed_objects);
+    add("locality", made.appearance->locality_cells);
+  }
+  add("layout", layout_name(made.file.layout));
+  add("visibility", visibility_name(r.file.visibility));
+  add("nodes", made.file.nodes);
+  add("channels", made.file.channels);
+  add("samplers", made.file.samplers);
+  add("accessors", made.file.accessors);
+  if (made.file.layout == gltf::Layout::instances) {
+    add("groups", made.file.instance_groups);
+    add("objectsPerGroup", objects_per_group(made));
+    add("singleObjectGroups", made.file.single_object_groups);
+  }
+  add("arguments", arguments);
+  add("notes", made.notes);
+  add("seconds", made.seconds);
+  return out;
+}
+
+Result<void> say(const GenerateRequest& r, const Made& made, const std::vector<std::string>& arguments) {
+  const Report facts = report(r, made, arguments);
+  if (!r.quiet) {
+    for (const std::string& note : made.notes) (void)std::fprintf(stderr, "note: %s\n", note.c_str());
+  }
+  if (!r.report.empty()) {
+    if (auto written = write_file(r.report, pretty(facts.json())); !written) return written;
+  }
+  if (r.format != Format::table) return write_stdout(facts.str(r.format));
+  if (r.quiet) return {};
+  const std::string line = finished_line(r, made);
+  const bool stdout_taken = r.report == "-" || (r.output == "-" && !r.dry_run);
+  if (!stdout_taken) return write_stdout(line);
+  (void)std::fputs(line.c_str(), stderr);
+  return {};
+}
+
+}  // namespace
+
+std::string generate_short_help() {
+  return "scenegen " SCENEGEN_VERSION
+         ": makes a town of brick buildings that goes up along a space-filling curve, as glTF.\n"
+         "\n"
+         "  scenegen --grid 4x4 --curve hilbert --coherence 0.95 -o town.glb   generate a town of 16 "
+         "buildings\n"
+         "  scenegen inspect town.glb                                          what is in a file\n"
+         "  scenegen diff a.glb b.glb                                          are two files the same "
+         "scene?\n"
+         "  sceneplay frames town.glb -o pictures                              see it\n"
+         "\n"
+         "scenegen --help lists every option with its default and range.\n";
+}
+
+int generate_verb(std::span<const std::string> arguments) {
+  GenerateRequest request;
+  Options options = generate_options(request);
+  const Result<Action> action = options.parse(arguments);
+  if (!action) return report_error(action.error());
+  Result<void> done;
+  if (*action == Action::help) {
+    done = write_stdout(options.help(colored(1)));
+  } else if (*action == Action::version) {
+    done = write_stdout("scenegen " SCENEGEN_VERSION "\n");
+  } else if (done = check(request, options); done && request.dump_config) {
+    done = write_stdout(pretty(options.config(conflicts(request))));
+  } else if (done) {
+    settle(request);
+    const std::vector<std::string> canonical = options.canonical_arguments();
+    const auto made = make(request, canonical);
+    if (!made) return report_error(made.error());
+    done = say(request, *made, canonical);
+  }
+  return done ? 0 : report_error(done.error());
+}
+
+}  // namespace scenegen::tools

@@ -1,0 +1,47 @@
+// Everything that `scenegen` can be asked for, and how it is said on the command line.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gen/generate.h"
+#include "scene/gltf/write.h"
+#include "timeline/appearance.h"
+#include "tools/cli.h"
+#include "tools/output.h"
+
+namespace scenegen::tools {
+
+struct GenerateRequest {
+  gen::TownOptions town;
+  std::uint32_t test_set = 0;                                               ///< 0: none, a town
+  std::optional<timeline::CurveKind> curve = timeline::CurveKind::hilbert;  ///< none: a static scene
+  timeline::AppearanceOptions appearance;
+  gltf::WriteOptions file;
+  std::uint64_t seed = 1;
+  std::uint32_t threads = 0;  ///< 0: one per processor
+
+  std::string output = "scene.glb";
+  std::string report;
+  Format format = Format::table;
+  bool dry_run = false;
+  bool dump_config = false;
+  bool quiet = false;
+};
+
+/// The options write into `request`, which must outlive them.
+[[nodiscard]] Options generate_options(GenerateRequest& request);
+
+/// Options that do not go together with the others of the request. Given, they are errors; they are not in a
+/// config.
+[[nodiscard]] std::vector<Conflict> conflicts(const GenerateRequest& request);
+
+/// Copies the seed and the threads to where the rooms look for them.
+void settle(GenerateRequest& request);
+
+[[nodiscard]] std::string layout_name(gltf::Layout layout);
+[[nodiscard]] std::string visibility_name(gltf::VisibilityEncoding encoding);
+
+}  // namespace scenegen::tools
