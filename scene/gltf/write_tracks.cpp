@@ -57,12 +57,25 @@ AnimationPlanner::AnimationPlanner(const Scene& scene)
 std::uint32_t AnimationPlanner::input_of(TrackId track) {
   std::uint32_t& known = input_of_track_[track.value];
   if (known != kUnknown) return known;
-  // The added keys follow from the own times, so equal own times are equal inputs.
-  const std::span<const float> times = scene_.times_s(track);
+  const FileKeys keys(scene_, track);
+  std::uint64_t hash = keys.count;
+  for (std::uint32_t k = 0; k < keys.count; ++k) {
+    const float time_s = file_time_s(scene_, track, keys, k);
+    hash = fast_hash(&time_s, sizeof time_s, hash);
+  }
   bool is_new = false;
   known = inputs_.add(
-      hash_floats(times, 1),
-      [&](std::uint32_t i) { return same_bits(scene_.times_s(plan_.inputs[i]), times); }, is_new);
+      hash,
+      [&](std::uint32_t i) {
+        const FileKeys other(scene_, plan_.inputs[i]);
+        if (other.count != keys.count) return false;
+        for (std::uint32_t k = 0; k < keys.count; ++k) {
+          if (file_time_s(scene_, plan_.inputs[i], other, k) != file_time_s(scene_, track, keys, k))
+            return false;
+        }
+        return true;
+      },
+      is_new);
   if (is_new) plan_.inputs.push_back(track);
   return known;
 }
@@ -72,8 +85,12 @@ std::uint32_t AnimationPlanner::pattern_of(const Pattern& pattern) {
   if (known != nullptr && *known != kUnknown) return *known;
   const FileKeys keys(scene_, pattern.track);
   std::uint64_t hash = keys.count;
-  for (std::uint32_t k = 0; k < keys.count; ++k)
-    hash = hash * 0x100000001b3ULL + (pattern.shown(scene_, keys.source(k)) ? 2 : 1);
+  bool ever_shown = false;
+  for (std::uint32_t k = 0; k < keys.count; ++k) {
+    const bool shown = pattern.shown(scene_, keys.source(k));
+    ever_shown = ever_shown || shown;
+    hash = hash * 0x100000001b3ULL + (shown ? 2 : 1);  // FNV's prime
+  }
   bool is_new = false;
   const std::uint32_t index = patterns_.add(
       fast_hash(&hash, sizeof hash),
@@ -88,7 +105,10 @@ std::uint32_t AnimationPlanner::pattern_of(const Pattern& pattern) {
         return true;
       },
       is_new);
-  if (is_new) plan_.patterns.push_back(pattern);
+  if (is_new) {
+    plan_.patterns.push_back(pattern);
+    ever_shown_.push_back(ever_shown ? 1 : 0);
+  }
   if (known != nullptr) *known = index;
   return index;
 }
@@ -121,7 +141,9 @@ std::uint32_t AnimationPlanner::pointer_sampler(TrackId track) {
 }
 
 std::uint32_t AnimationPlanner::scale_sampler(const Pattern& pattern, const glm::vec3& shown) {
-  const ScaleOutput wanted{pattern_of(pattern), shown};
+  const std::uint32_t pattern_index = pattern_of(pattern);
+  // What is never shown is all zeros, whatever its own scale.
+  const ScaleOutput wanted{pattern_index, ever_shown_[pattern_index] != 0 ? shown : glm::vec3(0.0F)};
   static_assert(sizeof wanted == 16);  // no padding: hashed as bytes
   bool is_new = false;
   const std::uint32_t output = scale_outputs_.add(

@@ -100,6 +100,7 @@ class AnimationPlanner {
   const Scene& scene_;
   AnimationPlan plan_;
   Dedup inputs_, patterns_, byte_outputs_, scale_outputs_, value_outputs_, samplers_;
+  std::vector<std::uint8_t> ever_shown_;         // by pattern
   std::vector<std::uint32_t> input_of_track_;    // kUnknown until asked
   std::vector<std::uint32_t> pattern_of_track_;  // of visibility tracks
 };
