@@ -112,9 +112,9 @@ Result<Made> make(const GenerateRequest& r, const std::vector<std::string>& argu
 }
 
 double objects_per_group(const Made& made) {
-  return made.file.instance_groups == 0
-             ? 0
-             : static_cast<double>(made.counts.objects) / static_cast<double>(made.file.instance_groups);
+  return made.file.instance_groups == 0 ? 0
+                                        : static_cast<double>(made.file.instanced_objects) /
+                                              static_cast<double>(made.file.instance_groups);
 }
 
 std::uint64_t moments(const Made& made) {

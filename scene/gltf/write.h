@@ -33,8 +33,9 @@ struct WriteReport {
   std::uint64_t bytes = 0;  ///< all files together
   std::uint64_t json_bytes = 0;
   std::uint64_t nodes = 0, channels = 0, samplers = 0, accessors = 0;
-  Layout layout = Layout::nodes;      ///< the one used
-  std::uint64_t instance_groups = 0;  ///< layout instances: EXT_mesh_gpu_instancing nodes
+  Layout layout = Layout::nodes;        ///< the one used
+  std::uint64_t instance_groups = 0;    ///< layout instances: EXT_mesh_gpu_instancing nodes
+  std::uint64_t instanced_objects = 0;  ///< in them; divided by them: objects per group
   std::uint64_t single_object_groups = 0;
   std::vector<std::string> notes;  ///< "instances: 61 % of groups hold one object; wrote groups instead"
 };

@@ -90,6 +90,7 @@ WriteReport Document::report() const {
   report.layout = nodes_.layout;
   if (nodes_.layout == Layout::instances) {
     report.instance_groups = nodes_.groups.size();
+    report.instanced_objects = nodes_.grouped.size();
     report.single_object_groups = nodes_.single_object_groups;
   }
   report.notes = nodes_.notes;

@@ -581,6 +581,7 @@ TEST_CASE("instances fall back to groups when most groups hold one object") {
   REQUIRE(town.has_value());
   CHECK(town->layout == Layout::instances);
   CHECK(town->instance_groups == 192);
+  CHECK(town->instanced_objects == 2400);
   CHECK(town->single_object_groups == 0);
   CHECK(town->notes.empty());
 }
