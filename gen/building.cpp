@@ -9,6 +9,12 @@
 namespace scenegen::gen {
 
 bool build_building(const BuildingPlan& plan, std::uint64_t most_parts, Layout& layout) {
+  // One storey tells how many there will be, before anything is kept.
+  LayoutSink counter(layout, most_parts / static_cast<std::uint64_t>(plan.floors), LayoutSink::Mode::count);
+  build_storey(plan, 0, 0, counter);
+  if (counter.overflowed()) return false;
+  layout.parts.reserve(counter.count() * static_cast<std::uint64_t>(plan.floors));
+
   LayoutSink sink(layout, most_parts);
   int bottom_mm = 0;
   if (plan.fitted && plan.margin_mm > 0) {

@@ -25,12 +25,6 @@ Result<std::uint32_t> sphere_slices(const std::string& model) {
                   std::to_string(kMostSlices) + " slices, as in sphere:32");
 }
 
-Box bounds_of(const Scene& scene) {
-  Box bounds;
-  for (const Box& b : object_bounds(scene)) bounds.add(b);
-  return bounds;
-}
-
 Result<void> choose_extras(const TownOptions& o, TownRecipe& recipe, std::vector<std::string>& notes) {
   recipe.extras_per_floor = o.extras_per_floor;
   if (o.extras_per_floor > 0 && !o.building_model.empty()) {
@@ -51,7 +45,7 @@ Result<void> choose_extras(const TownOptions& o, TownRecipe& recipe, std::vector
     Result<Scene> model = read_model(o.extra_model, "--extra-model", notes);
     if (!model) return forward_error(model);
     recipe.extra = ExtraKind::model;
-    const glm::dvec3 size(bounds_of(*model).size());
+    const glm::dvec3 size(model_bounds(*model).size());
     recipe.extra_size_m = {size.x, size.z, size.y};
     recipe.extra_model = std::move(*model);
   }
@@ -94,7 +88,7 @@ Result<TownRecipe> make_recipe(const TownOptions& o, std::vector<std::string>& n
   if (!o.building_model.empty()) {
     Result<Scene> model = read_model(o.building_model, "--building-model", notes);
     if (!model) return forward_error(model);
-    const glm::dvec3 size(bounds_of(*model).size());
+    const glm::dvec3 size(model_bounds(*model).size());
     recipe.building_m = {size.x, size.z};
     recipe.building_model = std::move(*model);
   }

@@ -67,28 +67,32 @@ struct Layout {
   glm::ivec3 size_mm{0};        ///< outer walls along x and y, and the highest point
 };
 
-/// Takes the parts of a layout; past `most_parts` it only says so, and memory stays bounded.
+/// Takes the parts of a layout, or only counts them; past `most_parts` it only says so, and memory stays
+/// bounded.
 class LayoutSink {
  public:
-  LayoutSink(Layout& layout, std::uint64_t most_parts) : layout_(layout), most_parts_(most_parts) {}
+  enum class Mode : std::uint8_t { keep, count };
+  LayoutSink(Layout& layout, std::uint64_t most_parts, Mode mode = Mode::keep)
+      : layout_(layout), most_parts_(most_parts), mode_(mode) {}
 
   void set_storey(std::uint32_t storey) { storey_ = storey; }
   void add(PartKind kind, const GridBox& box, PartFrame frame = PartFrame::building) {
-    if (layout_.parts.size() >= most_parts_) {
-      overflowed_ = true;
-      return;
-    }
+    if (++count_ > most_parts_ || mode_ == Mode::count) return;
     layout_.parts.push_back({box, storey_, kind, frame});
   }
-  void add_room(const GridBox& box) { layout_.rooms.push_back({box, storey_}); }
-  [[nodiscard]] bool overflowed() const { return overflowed_; }
+  void add_room(const GridBox& box) {
+    if (mode_ == Mode::keep) layout_.rooms.push_back({box, storey_});
+  }
+  [[nodiscard]] std::uint64_t count() const { return count_; }
+  [[nodiscard]] bool overflowed() const { return count_ > most_parts_; }
   [[nodiscard]] Layout& layout() { return layout_; }
 
  private:
   Layout& layout_;
   std::uint64_t most_parts_;
+  Mode mode_;
   std::uint32_t storey_ = 0;
-  bool overflowed_ = false;
+  std::uint64_t count_ = 0;
 };
 
 }  // namespace scenegen::gen

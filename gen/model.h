@@ -13,4 +13,7 @@ namespace scenegen::gen {
 [[nodiscard]] Result<Scene> read_model(const std::string& path, const char* option,
                                        std::vector<std::string>& notes);
 
+/// Box round all objects at rest.
+[[nodiscard]] Box model_bounds(const Scene& scene);
+
 }  // namespace scenegen::gen

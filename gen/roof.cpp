@@ -33,7 +33,7 @@ void add_attic_window(const BuildingPlan& plan, Wall& wall) {
   wall.openings.push_back({OpeningKind::window, u, first, end});
 }
 
-/// Brick gable with a coping stone on every step.
+/// Brick gable with a coping stone on every step; the back one ends in a chimney.
 void build_gable(const BuildingPlan& plan, const GableShape& shape, const WallPlace& place,
                  LayoutSink& sink) {
   Wall wall;
@@ -49,12 +49,14 @@ void build_gable(const BuildingPlan& plan, const GableShape& shape, const WallPl
   int course = 0;
   for (int step = 0; step < shape.steps; ++step) {
     const Interval u{step * shape.step_width_mm, plan.size_mm.x - step * shape.step_width_mm};
-    const int count = shape.step_courses + (step == 0 ? shape.first_courses : 0);
+    const bool last = step + 1 == shape.steps;
+    int count = shape.step_courses + (step == 0 ? shape.first_courses : 0);
+    if (last && !place.inwards_up) count += courses_up(plan.scaled_mm(700), plan.brick_mm.z);  // the chimney
     for (int i = 0; i < count; ++i, ++course)
       wall.courses.push_back({u, (course % 2) * plan.half_brick_mm()});
     const int top = shape.base_mm + course * plan.brick_mm.z;
     const Interval z{top, top + stone};
-    if (step + 1 == shape.steps) {
+    if (last) {
       lay_coping(place, {u.lo_mm - out, u.hi_mm + out}, across, z, sink);
     } else {
       const Interval left{u.lo_mm - out, u.lo_mm + shape.step_width_mm};
@@ -184,10 +186,10 @@ GableShape gable_shape(const BuildingPlan& plan, int base_mm) {
       std::max(1, static_cast<int>(std::lround(plan.scaled_mm(500) / static_cast<double>(brick)))) * brick;
   shape.step_courses = std::max(1, static_cast<int>(std::lround(kSteepness * shape.step_width_mm / course)));
   shape.steps = (plan.size_mm.x / 2 + shape.step_width_mm - 1) / shape.step_width_mm;
-  shape.exposure_mm = plan.scaled_mm(400);
+  shape.exposure_mm = plan.scaled_mm(340);
   shape.lap_mm = shape.exposure_mm / 8;
   shape.tile_mm = plan.scaled_mm(35);
-  shape.tile_width_mm = plan.scaled_mm(500);
+  shape.tile_width_mm = plan.scaled_mm(420);
   shape.beam_half_mm = std::min(plan.scaled_mm(90), plan.size_mm.x / 8);
 
   // The steps climb by `rise`; a tile is flatter than the roof by the angle of its lap.

@@ -6,6 +6,7 @@
 
 #include "gen/camera.h"
 #include "gen/extras.h"
+#include "gen/model.h"
 #include "gen/palette.h"
 #include "gen/primitives.h"
 #include "scene/append.h"
@@ -135,7 +136,7 @@ class TownBuilder {
     }
     if (recipe.building_model) {
       building_resources_ = append_resources(scene_, *recipe.building_model);
-      for (const Box& b : object_bounds(*recipe.building_model)) model_box_.add(b);
+      model_box_ = model_bounds(*recipe.building_model);
       height_m_ = model_box_.size().y;
     }
     prepare_extras();
@@ -183,7 +184,7 @@ class TownBuilder {
       extra_mesh_ = palette_.mesh(GeometryId(scene_.geometries.size() - 1), Look::cargo, "sphere");
     } else {
       extra_resources_ = append_resources(scene_, *recipe_.extra_model);
-      for (const Box& b : object_bounds(*recipe_.extra_model)) extra_box_.add(b);
+      extra_box_ = model_bounds(*recipe_.extra_model);
     }
   }
 
@@ -208,9 +209,12 @@ class TownBuilder {
 
   MeshId mesh_of(PartKind kind, std::uint64_t object, std::uint64_t building) {
     if (kind == PartKind::brick) {
-      // Each building is fired a little differently: its share of dark and pale bricks.
-      const float dark = 0.12F + 0.3F * firing_.unit(2 * building);
-      const float pale = 0.12F + 0.3F * firing_.unit(2 * building + 1);
+      // Most buildings are red with some dark and pale bricks; every fourth is mainly pale, some are mainly
+      // dark.
+      const float kind_draw = firing_.unit(3 * building);
+      const bool is_pale = kind_draw<0.25F, is_dark = kind_draw> 0.85F;
+      const float dark = (is_dark ? 0.6F : is_pale ? 0.02F : 0.08F) + 0.2F * firing_.unit(3 * building + 1);
+      const float pale = (is_pale ? 0.62F : 0.02F) + 0.12F * firing_.unit(3 * building + 2);
       const float draw = tint_.unit(object);
       return palette_.box(draw < dark          ? Look::brick_dark
                           : draw < dark + pale ? Look::brick_pale
@@ -284,7 +288,7 @@ class TownBuilder {
   }
 
   void add_camera() {
-    const glm::dvec2 half = -first_m_;
+    const glm::dvec2 half = -first_m_ + recipe_.plan.margin_mm * 0.001;
     Box bounds;
     bounds.add(glm::vec3(glm::dvec3(-half.x, 0, -half.y)));
     bounds.add(glm::vec3(glm::dvec3(half.x, height_m_, half.y)));
