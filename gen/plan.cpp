@@ -52,7 +52,8 @@ Result<void> check_bricks(const TownOptions& o) {
   // Opposite walls and one brick between them.
   const double least =
       std::ceil((2.0 * whole_mm(o.brick_m.y) + whole_mm(o.brick_m.x, 2)) / whole_mm(o.brick_m.x, 2));
-  if (auto r = in_range("--building-size", "width in bricks", o.building_bricks.x, least, 10'000); !r) return r;
+  if (auto r = in_range("--building-size", "width in bricks", o.building_bricks.x, least, 10'000); !r)
+    return r;
   return in_range("--building-size", "length in bricks", o.building_bricks.y, least, 10'000);
 }
 
@@ -67,7 +68,7 @@ Result<void> plan_windows(const TownOptions& o, BuildingPlan& plan, std::vector<
   if (plan.window_courses + 1 > plan.floor_courses) {
     const std::string floor = "a floor has " + std::to_string(plan.floor_courses) + " courses of " +
                               number(plan.brick_mm.z / 1000.0) + " m";
-    if (plan.floor_courses < 2) return usage("--window", "no window fits: " + floor + "; turn windows off");
+    if (plan.floor_courses < 2) return usage("--window", "no window fits: " + floor + "; use --windows off");
     return usage("--window", "height " + number(o.window_m.y) + " and its lintel need " +
                                  std::to_string(plan.window_courses + 1) + " courses, but " + floor +
                                  "; nearest height " +

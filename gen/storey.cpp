@@ -105,6 +105,7 @@ void build_outer_walls(const BuildingPlan& plan, const Division& division, int f
 /// A partition along one axis with a passage in the middle of each of `rooms` (spans along it).
 void build_partition(const BuildingPlan& plan, const WallPlace& place, Interval u, int bottom_mm,
                      const std::vector<Interval>& rooms, LayoutSink& sink) {
+  if (sink.overflowed()) return;
   Wall wall;
   wall.place = place;
   wall.kind = PartKind::block;

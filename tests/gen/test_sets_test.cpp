@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "gen/generate.h"
+#include "scene/validate.h"
 
 using namespace scenegen;
 using namespace scenegen::gen;
@@ -59,6 +60,7 @@ TEST_CASE("every test set has the counts of table 1") {
     const Scene& scene = generated->scene;
     check_equal(counted(scene), figures.at(set));
     check_equal(*predict_test_set(set), figures.at(set));
+    CHECK(validate(scene).empty());
     CHECK(scene.cameras.size() == 1);
     CHECK(generated->exempt == std::vector<std::uint8_t>(scene.objects.size(), 0));
     for (const Geometry& g : scene.geometries) {

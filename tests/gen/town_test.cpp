@@ -1,12 +1,15 @@
 // Towns: counts, names, placement, determinism and refusals.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <limits>
 #include <set>
 
 #include "gen/generate.h"
+#include "scene/gltf/write.h"
 #include "scene/limits.h"
 #include "scene/random.h"
+#include "scene/validate.h"
 
 using namespace scenegen;
 using namespace scenegen::gen;
@@ -73,7 +76,7 @@ void check_refused(const TownOptions& options, const std::string& option) {
 }  // namespace
 
 TEST_CASE("a prediction equals what is generated") {
-  for (std::uint64_t i = 0; i < 60; ++i) {
+  for (std::uint64_t i = 0; i < 40; ++i) {
     INFO("options " << i);
     const TownOptions options = random_options(i);
     const Result<Generated> g = generate_town(options);
@@ -87,9 +90,10 @@ TEST_CASE("a prediction equals what is generated") {
     std::set<std::string_view> names;
     for (std::size_t k = 0; k < g->scene.objects.size(); ++k) names.insert(g->scene.objects.names[k]);
     CHECK(names.size() == is.objects);
+    for (const Finding& f : validate(g->scene))
+      FAIL_CHECK("rule " << f.rule << " " << f.where << ": " << f.what);
     for (const Transform& t : g->scene.objects.frame_from_object) {
-      REQUIRE((t.scale.x > 0 && t.scale.y > 0 && t.scale.z > 0));
-      REQUIRE(std::isfinite(t.translation_m.x + t.translation_m.y + t.translation_m.z));
+      if (!(t.scale.x > 0 && t.scale.y > 0 && t.scale.z > 0)) FAIL("empty object");
     }
   }
 }
@@ -133,8 +137,7 @@ TEST_CASE("the camera has the town in view and fills the picture") {
         const glm::vec4 corner((k & 1) ? b.hi.x : b.lo.x, (k & 2) ? b.hi.y : b.lo.y,
                                (k & 4) ? b.hi.z : b.lo.z, 1);
         const glm::vec4 p = camera_from_world * corner;
-        REQUIRE(-p.z > camera.znear_m);
-        REQUIRE(-p.z < camera.zfar_m);
+        if (-p.z <= camera.znear_m || -p.z >= camera.zfar_m) FAIL("cut by a clipping plane");
         widest = std::max({widest, std::abs(p.y) / (-p.z * t), std::abs(p.x) / (-p.z * t * 16 / 9)});
       }
     }
@@ -209,14 +212,14 @@ TEST_CASE("options that cannot be are refused by name") {
   check_refused(with([](auto& o) { o.brick_m.x = 0; }), "--brick");
   check_refused(with([](auto& o) { o.brick_m.y = 0.6; }), "--brick");
   check_refused(with([&](auto& o) { o.brick_m.z = kNan; }), "--brick");
-  check_refused(with([](auto& o) { o.building_bricks = {1, 16}; }), "--building");
-  check_refused(with([](auto& o) { o.building_bricks = {16, 4'000'000'000U}; }), "--building");
+  check_refused(with([](auto& o) { o.building_bricks = {1, 16}; }), "--building-size");
+  check_refused(with([](auto& o) { o.building_bricks = {16, 4'000'000'000U}; }), "--building-size");
   check_refused(
       with([](auto& o) {
         o.building_bricks = {10'000, 10'000}, o.floors = 1000, o.floor_courses = 1000, o.windows = false;
       }),
-      "--building");
-  check_refused(with([](auto& o) { o.floor_courses = 0; }), "--floor-height");
+      "--building-size");
+  check_refused(with([](auto& o) { o.floor_courses = 0; }), "--floor-courses");
   check_refused(with([](auto& o) { o.floors = 0; }), "--floors");
   check_refused(with([](auto& o) { o.window_m.y = 2.8; }), "--window");
   check_refused(with([](auto& o) { o.window_m.x = -1; }), "--window");
@@ -241,4 +244,57 @@ TEST_CASE("small and odd buildings work, and say what they left out") {
   const Generated g = *generate_town(options);
   REQUIRE(g.notes.size() == 1);
   CHECK(g.notes[0].find("windows are 1 m x 1.17 m") != std::string::npos);
+}
+
+TEST_CASE("model files stand in for buildings and extra objects") {
+  // The model is a small town of our own, written and read back.
+  TownOptions small;
+  small.building_bricks = {4, 4};
+  small.floors = 1;
+  small.ground = false;
+  const Generated model = *generate_town(small);
+  const std::string path = (std::filesystem::temp_directory_path() / "scenegen_gen_town_model.glb").string();
+  REQUIRE(gltf::write(model.scene, path, {}));
+
+  TownOptions options;
+  options.grid = {3, 2};
+  options.building_model = path;
+  const Result<Generated> town = generate_town(options);
+  if (!town) FAIL(town.error().str());
+  const std::size_t of_model = model.scene.objects.size();
+  REQUIRE(town->scene.objects.size() == 2 + 6 * of_model);
+  CHECK(predict_town(options)->objects == town->scene.objects.size());
+  CHECK(predict_town(options)->vertices == counted(town->scene).vertices);
+  CHECK(town->scene.objects.names[2].starts_with("building_00_00/building_00_00/"));
+  CHECK(validate(town->scene).empty());
+  // Neighbours are `spacing_m` apart, on the ground.
+  std::vector<Box> of_building(6);
+  const std::vector<Box> boxes = object_bounds(town->scene);
+  for (std::size_t i = 2; i < boxes.size(); ++i) of_building[(i - 2) / of_model].add(boxes[i]);
+  for (const Box& b : of_building) CHECK(b.lo.y == Approx(0).margin(1e-4));
+  CHECK(of_building[1].lo.x - of_building[0].hi.x == Approx(options.spacing_m).margin(1e-3));
+  CHECK(of_building[0].lo.z - of_building[3].hi.z == Approx(options.spacing_m).margin(1e-3));
+
+  TownOptions with_extras;
+  with_extras.extras_per_floor = 3;
+  with_extras.extra_model = path;
+  const Generated filled = *generate_town(with_extras);
+  CHECK(filled.scene.objects.size() == predict_town(with_extras)->objects);
+  CHECK(counted(filled.scene).vertices == predict_town(with_extras)->vertices);
+  REQUIRE(filled.notes.size() == 1);
+  CHECK(filled.notes[0].find("scaled") != std::string::npos);  // a house does not fit into a room
+  std::size_t extras = 0;
+  for (std::size_t i = 0; i < filled.scene.objects.size(); ++i) {
+    extras += filled.scene.objects.names[i].find("/extra_") != std::string_view::npos;
+  }
+  CHECK(extras == 3 * 3 * of_model);
+  std::filesystem::remove(path);
+
+  options.building_model = "/nowhere/model.glb";
+  const Result<Generated> missing = generate_town(options);
+  REQUIRE_FALSE(missing);
+  CHECK(missing.error().str().find("/nowhere/model.glb") != std::string::npos);
+  options.building_model.clear();
+  with_extras.building_model = path;
+  CHECK_FALSE(generate_town(with_extras));
 }

@@ -18,8 +18,7 @@ void check_tiles(std::vector<Interval> pieces, Interval span) {
   REQUIRE_FALSE(pieces.empty());
   int at = span.lo_mm;
   for (const Interval& p : pieces) {
-    REQUIRE(p.lo_mm == at);
-    REQUIRE(p.hi_mm > p.lo_mm);
+    if (p.lo_mm != at || p.hi_mm <= p.lo_mm) FAIL("[" << p.lo_mm << ", " << p.hi_mm << ") follows " << at);
     at = p.hi_mm;
   }
   REQUIRE(at == span.hi_mm);
@@ -76,9 +75,9 @@ TEST_CASE("a course is tiled exactly by pieces no longer than a brick") {
     check_tiles(pieces, {lo, hi});
     for (std::size_t k = 0; k < pieces.size(); ++k) {
       const int size = pieces[k].hi_mm - pieces[k].lo_mm;
-      REQUIRE(size <= length);
-      if (pieces.size() > 1) REQUIRE(size >= length / 4);
-      if (k >= 2 && k + 2 < pieces.size()) REQUIRE(size == length);
+      if (size > length) FAIL("longer than a brick");
+      if (pieces.size() > 1 && size < length / 4) FAIL("shorter than a quarter");
+      if (k >= 2 && k + 2 < pieces.size() && size != length) FAIL("cut within the course");
     }
   }
 }
