@@ -40,7 +40,10 @@ int main(int argc, char** argv) {
 
   scenegen::Scene scene;
   scene.geometries.push_back(unit_box());
-  scene.materials.push_back({.name = "clay", .base_color = {0.7F, 0.3F, 0.2F, 1.0F}, .metallic = 0.0F});
+  scenegen::Material& clay = scene.materials.emplace_back();
+  clay.name = "clay";
+  clay.base_color = {0.7F, 0.3F, 0.2F, 1.0F};
+  clay.metallic = 0.0F;
   scene.meshes.push_back({"box", {{scenegen::GeometryId(0), scenegen::MaterialId(0)}}});
 
   for (int i = 0; i < 10; ++i) {
