@@ -62,7 +62,8 @@ class Compiler {
  private:
   Keys keys(TrackId id) const {
     const Track& track = scene_.tracks[id.value];
-    return {track.property, track.interpolation, scene_.times_s(id), scene_.values(id)};
+    return {track.property, track.interpolation, width(track.property), scene_.times_s(id),
+            scene_.values(id)};
   }
 
   void copy_rest_state() {
@@ -182,12 +183,24 @@ class Compiler {
       if (driven[i] == 0 && parent_slot == kNone) continue;
       const auto slot = static_cast<std::uint32_t>(out_->moving_frames.size());
       out_->frame_slot[i] = slot;
-      const glm::mat4 parent_world = has_parent ? out_->world_from_frame[f.parent.value] : glm::mat4(1.0F);
-      out_->moving_frames.push_back(
-          {FrameId(i), parent_slot, has_parent, parent_world, local_[i], f.has_matrix, f.matrix});
+      MovingFrame moving;
+      moving.frame = FrameId(i);
+      moving.parent = parent_slot;
+      if (has_parent && parent_slot == kNone) moving.still_parent = f.parent;
+      if (f.has_matrix) {
+        moving.matrix = static_cast<std::uint32_t>(out_->matrices.size());
+        out_->matrices.push_back(f.matrix);
+      }
+      out_->moving_frames.push_back(moving);
+      out_->moving_local.push_back(local_[i]);
       if (parent_slot != kNone) children.push_back({parent_slot, slot});
     }
-    out_->children = to_lists(out_->moving_frames.size(), pairs_of(children));
+    Lists lists = to_lists(out_->moving_frames.size(), pairs_of(children));
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+      out_->moving_frames[i].first_child = static_cast<std::uint32_t>(lists.first[i]);
+      out_->moving_frames[i].end_child = static_cast<std::uint32_t>(lists.first[i + 1]);
+    }
+    out_->children = std::move(lists.items);
   }
 
   bool track_changes(TrackId id) const {
@@ -217,7 +230,18 @@ class Compiler {
       out_->meshes_change |= add_key_track(o.track, o.object.value);
     }
     for (const MaterialTrack& m : scene_.material_tracks) add_key_track(m.track, m.material.value);
-    out_->keys.targets = to_lists(out_->keys.track_count(), pairs_of(targets_));
+    place_targets();
+  }
+
+  void place_targets() {
+    KeyEvents& out = out_->keys;
+    Lists lists = to_lists(out.track_count(), pairs_of(targets_));
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+      const auto list = lists[i];
+      out.tracks[i].target_count = static_cast<std::uint32_t>(list.size());
+      out.tracks[i].target = list.size() == 1 ? list[0] : static_cast<std::uint32_t>(lists.first[i]);
+    }
+    out.targets = std::move(lists.items);
   }
 
   /// False if the track never changes (and is left out).
@@ -228,17 +252,22 @@ class Compiler {
       const Keys k = keys(id);
       const auto track = static_cast<std::uint32_t>(out.track_count());
       compact_[id.value] = track;
-      out.tracks.push_back({k.property, k.interpolation, static_cast<std::uint32_t>(k.times_s.size()),
-                            out.key_s.size(), out.values.size(), k.values.size()});
-      out.key_s.insert(out.key_s.end(), k.times_s.begin(), k.times_s.end());
-      out.values.insert(out.values.end(), k.values.begin(), k.values.end());
+      KeyEvents::KeyTrack compact{k.property, k.interpolation};
+      compact.components = static_cast<std::uint8_t>(k.components);
+      compact.floats_per_key = static_cast<std::uint8_t>(k.values.size() / k.times_s.size());
+      compact.key_count = static_cast<std::uint32_t>(k.times_s.size());
+      compact.floats = out.pool.size();
+      out.tracks.push_back(compact);
+      out.pool.insert(out.pool.end(), k.times_s.begin(), k.times_s.end());
+      out.pool.insert(out.pool.end(), k.values.begin(), k.values.end());
       out.all_tracks_cost += 1 + std::bit_width(k.times_s.size());
       for (std::size_t i = 0; i < k.times_s.size(); ++i) {
-        const auto segment = static_cast<std::int32_t>(i);
-        out.changes_after.push_back(static_cast<std::uint8_t>(segment_changes(k, segment)));
         if (!is_event(k, i)) continue;
+        const auto segment = static_cast<std::int32_t>(i);
+        const int changes = (segment_changes(k, segment - 1) ? KeyEvents::before : 0) |
+                            (segment_changes(k, segment) ? KeyEvents::after : 0);
         key_events_.push_back({k.times_s[i], static_cast<std::uint32_t>(entered_.size())});
-        entered_.push_back({track, segment});
+        entered_.push_back({track, segment, static_cast<std::uint8_t>(changes)});
       }
     }
     targets_.push_back({compact_[id.value], target});
@@ -252,23 +281,31 @@ class Compiler {
       out.time_s.push_back(e.time_s);
       out.track.push_back(entered_[e.item].track);
       out.segment.push_back(entered_[e.item].segment);
+      out.changes.push_back(entered_[e.item].changes);
     }
   }
 
   void place_moving_objects() {
     if (out_->moving_frames.empty()) return;
     const auto& frame_of = out_->object_frame;
-    out_->object_slot.assign(frame_of.size(), kNone);
-    std::vector<Pair> hangs_on;
-    for (std::size_t o = 0; o < frame_of.size(); ++o) {
-      const std::uint32_t frame = frame_of[o].valid() ? out_->frame_slot[frame_of[o].value] : kNone;
-      if (frame == kNone) continue;
-      const auto slot = static_cast<std::uint32_t>(out_->moving_objects.size());
-      out_->object_slot[o] = slot;
-      out_->moving_objects.emplace_back(o);
-      hangs_on.push_back({frame, slot});
+    const Lists lists = to_lists(out_->moving_frames.size(), [&](const auto& visit) {
+      for (std::size_t o = 0; o < frame_of.size(); ++o) {
+        const std::uint32_t slot = frame_of[o].valid() ? out_->frame_slot[frame_of[o].value] : kNone;
+        if (slot != kNone) visit(slot, static_cast<std::uint32_t>(o));
+      }
+    });
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+      out_->moving_frames[i].first_object = static_cast<std::uint32_t>(lists.first[i]);
+      out_->moving_frames[i].end_object = static_cast<std::uint32_t>(lists.first[i + 1]);
     }
-    out_->frame_objects = to_lists(out_->moving_frames.size(), pairs_of(hangs_on));
+    out_->object_slot.assign(frame_of.size(), kNone);
+    out_->frame_objects.reserve(lists.items.size());
+    for (const std::uint32_t o : lists.items) {
+      out_->object_slot[o] = static_cast<std::uint32_t>(out_->frame_objects.size());
+      out_->frame_objects.emplace_back(o);
+    }
+    out_->moving_objects = out_->frame_objects;
+    std::sort(out_->moving_objects.begin(), out_->moving_objects.end());
   }
 
   // ---- What it amounts to
@@ -324,6 +361,7 @@ class Compiler {
   struct Entered {
     std::uint32_t track;
     std::int32_t segment;
+    std::uint8_t changes;
   };
 
   const Scene& scene_;

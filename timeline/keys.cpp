@@ -13,10 +13,15 @@ namespace {
 // = 1e-10) and sin(angle) loses digits.
 constexpr double kNearlyEqual = 0.999999;
 
-glm::vec4 to_vec4(std::span<const float> values) {
-  glm::vec4 out(0.0F);
-  for (std::size_t i = 0; i < values.size(); ++i) out[static_cast<int>(i)] = values[i];
-  return out;
+glm::vec4 to_vec4(const float* v, std::size_t count) {
+  switch (count) {
+    case 3:
+      return {v[0], v[1], v[2], 0.0F};
+    case 4:
+      return {v[0], v[1], v[2], v[3]};
+    default:
+      return {v[0], 0.0F, 0.0F, 0.0F};
+  }
 }
 
 glm::vec4 to_float(const std::array<double, 4>& v) {
@@ -30,6 +35,11 @@ glm::vec4 normalised(const std::array<double, 4>& q, const glm::vec4& fallback) 
   if (!(length > 0.0) || !std::isfinite(length)) return fallback;
   const double scale = 1.0 / length;
   return to_float({q[0] * scale, q[1] * scale, q[2] * scale, q[3] * scale});
+}
+
+glm::vec4 mix(const glm::vec4& a, const glm::vec4& b, double u) {
+  const auto between = [u](float x, float y) { return static_cast<float>((1.0 - u) * x + u * y); };
+  return {between(a.x, b.x), between(a.y, b.y), between(a.z, b.z), between(a.w, b.w)};
 }
 
 glm::vec4 slerp(const glm::vec4& a, const glm::vec4& b, double u) {
@@ -52,7 +62,7 @@ glm::vec4 slerp(const glm::vec4& a, const glm::vec4& b, double u) {
 }  // namespace
 
 std::span<const float> Keys::value(std::size_t k) const {
-  const std::size_t w = width(property);
+  const std::size_t w = components;
   return interpolation == Interpolation::cubic_spline ? values.subspan((k * 3 + 1) * w, w)
                                                       : values.subspan(k * w, w);
 }
@@ -74,35 +84,35 @@ bool segment_changes(const Keys& keys, std::int32_t k) {
   return std::any_of(tangents.begin(), tangents.end(), [](float v) { return v != 0.0F; });
 }
 
-glm::vec4 evaluate(const Keys& keys, std::int32_t segment, double time_s) {
-  const auto k = static_cast<std::size_t>(std::max(segment, 0));
-  const glm::vec4 a = to_vec4(keys.value(k));
-  if (!segment_changes(keys, segment)) return a;
+glm::vec4 key_value(const Keys& keys, std::int32_t segment) {
+  const std::span<const float> v = keys.value(static_cast<std::size_t>(std::max(segment, 0)));
+  return to_vec4(v.data(), v.size());
+}
+
+glm::vec4 interpolate(const Keys& keys, std::int32_t segment, double time_s) {
+  const auto k = static_cast<std::size_t>(segment);
+  const glm::vec4 a = key_value(keys, segment);
   const double begin_s = keys.times_s[k];
   const double length_s = keys.times_s[k + 1] - begin_s;
   const double u = (time_s - begin_s) / length_s;
   if (u == 0.0) return a;
 
-  const glm::vec4 b = to_vec4(keys.value(k + 1));
+  const glm::vec4 b = key_value(keys, segment + 1);
   const bool spherical = keys.property == Property::rotation;
-  if (keys.interpolation == Interpolation::linear && spherical) return slerp(a, b, u);
-  std::array<double, 4> out{};
-  if (keys.interpolation == Interpolation::linear) {
-    for (int i = 0; i < 4; ++i) out[static_cast<std::size_t>(i)] = (1.0 - u) * a[i] + u * b[i];
-  } else {
-    const std::size_t w = width(keys.property);
-    const glm::vec4 tangent_out = to_vec4(keys.values.subspan((k * 3 + 2) * w, w));
-    const glm::vec4 tangent_in = to_vec4(keys.values.subspan((k * 3 + 3) * w, w));
-    const double u2 = u * u;
-    const double u3 = u2 * u;
-    for (int i = 0; i < 4; ++i) {
-      out[static_cast<std::size_t>(i)] = (2 * u3 - 3 * u2 + 1) * a[i] +
-                                         length_s * (u3 - 2 * u2 + u) * tangent_out[i] +
-                                         (3 * u2 - 2 * u3) * b[i] + length_s * (u3 - u2) * tangent_in[i];
-    }
-    if (spherical) return normalised(out, a);
+  if (keys.interpolation == Interpolation::linear) return spherical ? slerp(a, b, u) : mix(a, b, u);
+  const std::size_t w = keys.components;
+  const float* const out_of_k = keys.values.data() + (k * 3 + 2) * w;
+  const glm::vec4 tangent_out = to_vec4(out_of_k, w);
+  const glm::vec4 tangent_in = to_vec4(out_of_k + w, w);
+  const double u2 = u * u;
+  const double u3 = u2 * u;
+  std::array<double, 4> p{};
+  for (int i = 0; i < 4; ++i) {
+    p[static_cast<std::size_t>(i)] = (2 * u3 - 3 * u2 + 1) * a[i] +
+                                     length_s * (u3 - 2 * u2 + u) * tangent_out[i] +
+                                     (3 * u2 - 2 * u3) * b[i] + length_s * (u3 - u2) * tangent_in[i];
   }
-  return to_float(out);
+  return spherical ? normalised(p, a) : to_float(p);
 }
 
 }  // namespace scenegen::timeline

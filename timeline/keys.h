@@ -14,6 +14,7 @@ namespace scenegen::timeline {
 struct Keys {
   Property property = Property::visibility;
   Interpolation interpolation = Interpolation::step;
+  std::uint32_t components = 0;  ///< width(property)
   std::span<const float> times_s;
   std::span<const float> values;
 
@@ -29,10 +30,13 @@ struct Keys {
 /// before the first or after the last key.
 [[nodiscard]] bool segment_changes(const Keys& keys, std::int32_t k);
 
-/// Value at `time_s`, which lies in `segment`; width(property) components are meaningful. At a key, and in
-/// a segment that does not change, it is the key's own value, bit for bit. glTF 2.0 appendix C: LINEAR
-/// rotations are spherical along the shortest path and normalised, CUBICSPLINE is Hermite with tangents
-/// scaled by the segment's length, rotations normalised.
-[[nodiscard]] glm::vec4 evaluate(const Keys& keys, std::int32_t segment, double time_s);
+/// Value of key `segment` (of the first key for -1): what holds everywhere in a segment that does not change.
+[[nodiscard]] glm::vec4 key_value(const Keys& keys, std::int32_t segment);
+
+/// Value at `time_s`, which lies in `segment`, where segment_changes(); `components` of it are meaningful. At
+/// the key it is the key's own value, bit for bit. glTF 2.0 appendix C: LINEAR rotations are spherical along
+/// the shortest path and normalised; CUBICSPLINE is Hermite with tangents scaled by the segment's length,
+/// rotations normalised.
+[[nodiscard]] glm::vec4 interpolate(const Keys& keys, std::int32_t segment, double time_s);
 
 }  // namespace scenegen::timeline

@@ -1,9 +1,8 @@
 #include "timeline/player.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
-#include <cmath>
-#include <cstring>
 #include <vector>
 
 #include "timeline/keys.h"
@@ -18,7 +17,12 @@ constexpr std::uint32_t kNone = MovingFrame::kNone;
 
 template <class T>
 bool same_bits(const T& a, const T& b) {
-  return std::memcmp(&a, &b, sizeof(T)) == 0;
+  using Words = std::array<std::uint32_t, sizeof(T) / 4>;
+  const auto words_a = std::bit_cast<Words>(a);
+  const auto words_b = std::bit_cast<Words>(b);
+  std::uint32_t different = 0;
+  for (std::size_t i = 0; i < words_a.size(); ++i) different |= words_a[i] ^ words_b[i];
+  return different == 0;
 }
 
 /// True if `to` took the place of other bits.
@@ -66,11 +70,12 @@ struct Player::State {
   void flip_track(std::uint32_t track);
   void report_visibility();
   void seek_keys(double time_s);
-  void enter(std::uint32_t track, std::int32_t new_segment);
+  void enter(std::uint32_t track, std::int32_t new_segment, bool changes);
   void update_active(std::uint32_t track);
-  void apply(std::uint32_t track, double time_s);
+  void apply_all(const std::vector<std::uint32_t>& list, double time_s);
+  void prefetch(const std::vector<std::uint32_t>& list, std::size_t at) const;
   void update_frames();
-  void update_objects_of(std::uint32_t frame_slot);
+  void update_objects_of(const MovingFrame& moving, const glm::mat4& frame);
   [[nodiscard]] glm::mat4 world_from_frame(FrameId frame) const;
 
   std::shared_ptr<const Timeline> timeline;
@@ -78,7 +83,7 @@ struct Player::State {
   double time_s = 0;
   ChangeSet changes;
 
-  std::size_t visibility_passed = 0, keys_passed = 0;  ///< events with time <= time_s
+  std::size_t visibility_passed = 0, keys_passed = 0;  ///< events with time <= the present
 
   std::vector<std::uint64_t> visible;  ///< a bit an object
   std::size_t visible_count = 0;
@@ -86,17 +91,28 @@ struct Player::State {
   OrderedMarks flipped_tracks, flipped_objects;
   std::vector<ObjectId> shown, hidden;
 
-  // Key tracks: in which segment each is, and those whose segment changes with time.
-  std::vector<std::int32_t> segment;
-  std::vector<std::uint32_t> active, active_place;
-  std::vector<std::uint32_t> entered;
-  std::vector<std::uint8_t> is_entered;
+  // Tracks with keys: those whose segment changes with time are active.
+  struct TrackState {
+    std::int32_t segment = -1;
+    std::uint32_t active_place = kNone;
+    bool changes = false;
+    bool is_entered = false;
+  };
+  void apply(const KeyEvents::KeyTrack& track, const TrackState& state, double time_s);
+  std::vector<TrackState> tracks;
+  std::vector<std::uint32_t> active, entered;
 
-  // Motion: by slot of moving frame, by slot of moving object.
-  std::vector<Transform> local;
-  std::vector<glm::mat4> frame_world;
-  std::vector<glm::mat4> object_local, object_world;
-  OrderedMarks dirty_frames, moved_slots;
+  // Motion: by slot of moving frame, by slot of moving object. Two cache lines each.
+  struct alignas(64) FrameState {
+    glm::mat4 world;
+    Transform local;
+  };
+  struct alignas(64) ObjectState {
+    glm::mat4 world, local;
+  };
+  std::vector<FrameState> frames;
+  std::vector<ObjectState> objects;
+  OrderedMarks dirty_frames, moved_objects;
   std::vector<ObjectId> moved;
 
   std::vector<MeshId> mesh;  ///< empty if no mesh is ever swapped
@@ -117,22 +133,21 @@ Player::State::State(std::shared_ptr<const Timeline> t)
       track_on(data.visibility.on_at_start),
       flipped_tracks(data.visibility.track_count()),
       flipped_objects(data.visibility.track_count() == 0 ? 0 : data.object_mesh.size()),
-      segment(data.keys.track_count(), -1),
-      active_place(data.keys.track_count(), kNone),
-      is_entered(data.keys.track_count(), 0),
+      tracks(data.keys.track_count()),
       dirty_frames(data.moving_frames.size()),
-      moved_slots(data.moving_objects.size()),
+      moved_objects(data.object_slot.size()),
       remeshed_objects(data.meshes_change ? data.object_mesh.size() : 0),
       base_color(data.base_color),
       emissive(data.emissive),
       recolored_materials(data.base_color.size()) {
-  for (const MovingFrame& f : data.moving_frames) {
-    local.push_back(f.local);
-    frame_world.push_back(data.world_from_frame[f.frame.value]);
+  frames.reserve(data.moving_frames.size());
+  for (std::size_t i = 0; i < data.moving_frames.size(); ++i) {
+    frames.push_back({data.world_from_frame[data.moving_frames[i].frame.value], data.moving_local[i]});
   }
-  for (const ObjectId o : data.moving_objects) {
-    object_local.push_back(data.frame_from_object[o.value].matrix());
-    object_world.push_back(world_from_frame(data.object_frame[o.value]) * object_local.back());
+  objects.reserve(data.frame_objects.size());
+  for (const ObjectId o : data.frame_objects) {
+    const glm::mat4 local = data.frame_from_object[o.value].matrix();
+    objects.push_back({world_from_frame(data.object_frame[o.value]) * local, local});
   }
   if (data.meshes_change) mesh = data.object_mesh;
   // The most that one step can report: nothing is allocated from here on.
@@ -140,7 +155,7 @@ Player::State::State(std::shared_ptr<const Timeline> t)
   shown.reserve(most_flips);
   hidden.reserve(most_flips);
   moved.reserve(data.moving_objects.size());
-  remeshed.reserve(data.meshes_change ? data.keys.targets.items.size() : 0);
+  remeshed.reserve(data.meshes_change ? data.keys.targets.size() : 0);
   recolored.reserve(data.base_color.size());
   active.reserve(data.keys.track_count());
   entered.reserve(data.keys.track_count());
@@ -208,69 +223,116 @@ void Player::State::seek_keys(double t) {
   const std::size_t passed = events_until(k.time_s, keys_passed, t);
   if (distance(passed, keys_passed) > k.all_tracks_cost) {
     for (std::uint32_t track = 0; track < k.track_count(); ++track) {
-      const std::int32_t now = segment_at(k.keys(track).times_s, t);
-      if (now != segment[track]) enter(track, now);
+      const Keys keys = k.keys(k.tracks[track]);
+      const std::int32_t now = segment_at(keys.times_s, t);
+      if (now != tracks[track].segment) enter(track, now, segment_changes(keys, now));
     }
   } else {
-    for (std::size_t i = keys_passed; i < passed; ++i) enter(k.track[i], k.segment[i]);
-    for (std::size_t i = keys_passed; i > passed; --i) enter(k.track[i - 1], k.segment[i - 1] - 1);
+    for (std::size_t i = keys_passed; i < passed; ++i) {
+      enter(k.track[i], k.segment[i], (k.changes[i] & KeyEvents::after) != 0);
+    }
+    for (std::size_t i = keys_passed; i-- > passed;) {
+      enter(k.track[i], k.segment[i] - 1, (k.changes[i] & KeyEvents::before) != 0);
+    }
   }
   keys_passed = passed;
 
-  for (const std::uint32_t track : entered) update_active(track);
-  for (const std::uint32_t track : active) apply(track, t);
   for (const std::uint32_t track : entered) {
-    if (active_place[track] == kNone) apply(track, t);
-    is_entered[track] = 0;
+    tracks[track].is_entered = false;
+    update_active(track);
   }
+  apply_all(active, t);
+  // What is active has been applied; the others hold the value of a key.
+  std::erase_if(entered, [this](std::uint32_t track) { return tracks[track].changes; });
+  apply_all(entered, t);
   entered.clear();
 
   update_frames();
-  moved_slots.drain([this](std::uint32_t slot) { moved.push_back(data.moving_objects[slot]); });
+  moved_objects.drain([this](std::uint32_t o) { moved.emplace_back(o); });
   remeshed_objects.drain([this](std::uint32_t o) { remeshed.emplace_back(o); });
   recolored_materials.drain([this](std::uint32_t m) { recolored.emplace_back(m); });
 }
 
-void Player::State::enter(std::uint32_t track, std::int32_t new_segment) {
-  segment[track] = new_segment;
-  if (is_entered[track] != 0) return;
-  is_entered[track] = 1;
+void Player::State::enter(std::uint32_t track, std::int32_t new_segment, bool changes_there) {
+  TrackState& state = tracks[track];
+  state.segment = new_segment;
+  state.changes = changes_there;
+  if (state.is_entered) return;
+  state.is_entered = true;
   entered.push_back(track);
 }
 
 void Player::State::update_active(std::uint32_t track) {
-  const bool changes_now = data.keys.changes(track, segment[track]);
-  const std::uint32_t place = active_place[track];
-  if (changes_now == (place != kNone)) return;
-  if (changes_now) {
-    active_place[track] = static_cast<std::uint32_t>(active.size());
+  TrackState& state = tracks[track];
+  if (state.changes == (state.active_place != kNone)) return;
+  if (state.changes) {
+    state.active_place = static_cast<std::uint32_t>(active.size());
     active.push_back(track);
   } else {
-    active[place] = active.back();
-    active_place[active[place]] = place;
+    const std::uint32_t last = active.back();
+    active[state.active_place] = last;
+    tracks[last].active_place = state.active_place;
     active.pop_back();
-    active_place[track] = kNone;
+    state.active_place = kNone;
   }
 }
 
-void Player::State::apply(std::uint32_t track, double t) {
+void Player::State::apply_all(const std::vector<std::uint32_t>& list, double t) {
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    prefetch(list, i);
+    apply(data.keys.tracks[list[i]], tracks[list[i]], t);
+  }
+}
+
+/// Tracks, keys, frames and objects of one list lie all over memory, one behind the other: each stage is
+/// asked for some tracks ahead of the stage that needs it (three times faster at 1 M moving objects).
+void Player::State::prefetch(const std::vector<std::uint32_t>& list, std::size_t at) const {
+  constexpr std::size_t kAhead = 8;
+  const auto track = [&](std::size_t stage) {
+    return at + stage * kAhead < list.size() ? &data.keys.tracks[list[at + stage * kAhead]] : nullptr;
+  };
+  const auto frame_of = [](const KeyEvents::KeyTrack* t) {
+    const bool is_one_frame = t != nullptr && t->target_count == 1 &&
+                              (t->property == Property::translation || t->property == Property::rotation ||
+                               t->property == Property::scale);
+    return is_one_frame ? t->target : kNone;
+  };
+  if (const auto* t = track(4)) __builtin_prefetch(t);
+  if (const auto* t = track(3)) {
+    __builtin_prefetch(data.keys.pool.data() + t->floats);
+    if (const std::uint32_t f = frame_of(t); f != kNone) __builtin_prefetch(&data.moving_frames[f]);
+  }
+  if (const std::uint32_t f = frame_of(track(2)); f != kNone) {
+    __builtin_prefetch(&frames[f].world);
+    __builtin_prefetch(&frames[f].local);
+  }
+  if (const std::uint32_t f = frame_of(track(1)); f != kNone && !objects.empty()) {
+    const std::size_t first = std::min<std::size_t>(data.moving_frames[f].first_object, objects.size() - 1);
+    __builtin_prefetch(&objects[first].world);
+    __builtin_prefetch(&objects[first].local);
+  }
+}
+
+void Player::State::apply(const KeyEvents::KeyTrack& track, const TrackState& state, double t) {
   const Keys keys = data.keys.keys(track);
-  const glm::vec4 value = evaluate(keys, segment[track], t);
-  const std::span<const std::uint32_t> targets = data.keys.targets[track];
+  const glm::vec4 value =
+      state.changes ? interpolate(keys, state.segment, t) : key_value(keys, state.segment);
+  const std::span<const std::uint32_t> targets = data.keys.target_list(track);
   switch (keys.property) {
     case Property::translation:
       for (const std::uint32_t f : targets) {
-        if (replace(local[f].translation_m, glm::vec3(value))) dirty_frames.set(f);
+        if (replace(frames[f].local.translation_m, glm::vec3(value))) dirty_frames.set(f);
       }
       break;
     case Property::rotation:
       for (const std::uint32_t f : targets) {
-        if (replace(local[f].rotation, glm::quat(value.w, value.x, value.y, value.z))) dirty_frames.set(f);
+        if (replace(frames[f].local.rotation, glm::quat(value.w, value.x, value.y, value.z)))
+          dirty_frames.set(f);
       }
       break;
     case Property::scale:
       for (const std::uint32_t f : targets) {
-        if (replace(local[f].scale, glm::vec3(value))) dirty_frames.set(f);
+        if (replace(frames[f].local.scale, glm::vec3(value))) dirty_frames.set(f);
       }
       break;
     case Property::mesh:
@@ -297,25 +359,29 @@ void Player::State::apply(std::uint32_t track, double t) {
 
 void Player::State::update_frames() {
   dirty_frames.drain([this](std::uint32_t slot) {  // parents stand before children
-    const MovingFrame& f = data.moving_frames[slot];
-    const glm::mat4 m = f.has_matrix ? f.matrix : local[slot].matrix();
-    const glm::mat4& parent = f.parent != kNone ? frame_world[f.parent] : f.parent_world;
-    if (!replace(frame_world[slot], f.has_parent ? parent * m : m)) return;
-    for (const std::uint32_t child : data.children[slot]) dirty_frames.set(child);
-    update_objects_of(slot);
+    const MovingFrame& moving = data.moving_frames[slot];
+    FrameState& frame = frames[slot];
+    glm::mat4 world = moving.matrix != kNone ? data.matrices[moving.matrix] : frame.local.matrix();
+    if (moving.parent != kNone) {
+      world = frames[moving.parent].world * world;
+    } else if (moving.still_parent.valid()) {
+      world = data.world_from_frame[moving.still_parent.value] * world;
+    }
+    if (!replace(frame.world, world)) return;
+    for (std::uint32_t i = moving.first_child; i < moving.end_child; ++i) dirty_frames.set(data.children[i]);
+    update_objects_of(moving, world);
   });
 }
 
-void Player::State::update_objects_of(std::uint32_t frame_slot) {
-  const glm::mat4& frame = frame_world[frame_slot];
-  for (const std::uint32_t slot : data.frame_objects[frame_slot]) {
-    if (replace(object_world[slot], frame * object_local[slot])) moved_slots.set(slot);
+void Player::State::update_objects_of(const MovingFrame& moving, const glm::mat4& frame) {
+  for (std::uint32_t i = moving.first_object; i < moving.end_object; ++i) {
+    if (replace(objects[i].world, frame * objects[i].local)) moved_objects.set(data.frame_objects[i].value);
   }
 }
 
 glm::mat4 Player::State::world_from_frame(FrameId frame) const {
   const std::uint32_t slot = data.frame_slot[frame.value];
-  return slot != kNone ? frame_world[slot] : data.world_from_frame[frame.value];
+  return slot != kNone ? frames[slot].world : data.world_from_frame[frame.value];
 }
 
 // ---- Player
@@ -350,7 +416,7 @@ std::size_t Player::visible_count() const {
 glm::mat4 Player::world_from_object(ObjectId id) const {
   const TimelineData& data = state_->data;
   if (!data.object_slot.empty() && data.object_slot[id.value] != kNone) {
-    return state_->object_world[data.object_slot[id.value]];
+    return state_->objects[data.object_slot[id.value]].world;
   }
   const glm::mat4 local = data.frame_from_object[id.value].matrix();
   const FrameId frame = data.object_frame[id.value];

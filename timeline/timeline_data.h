@@ -39,32 +39,40 @@ struct VisibilityEvents {
 
 /// All other tracks. At event i track[i] enters segment[i] (and was in segment[i] - 1 before).
 struct KeyEvents {
-  std::vector<float> time_s;  ///< ascending
-  std::vector<std::uint32_t> track;
-  std::vector<std::int32_t> segment;
   struct KeyTrack {
     Property property = Property::translation;
     Interpolation interpolation = Interpolation::step;
+    std::uint8_t components = 0;      ///< width(property)
+    std::uint8_t floats_per_key = 0;  ///< of values
     std::uint32_t key_count = 0;
-    std::uint64_t first_key = 0;    ///< into key_s and changes_after
-    std::uint64_t first_value = 0;  ///< into values
-    std::uint64_t value_count = 0;
+    std::uint32_t target_count = 0;
+    std::uint32_t target = 0;  ///< the only one, or the first in `targets`; see target_list()
+    std::uint64_t floats = 0;  ///< into `pool`: times, then values
   };
+  enum Changes : std::uint8_t { before = 1, after = 2 };
+
+  std::vector<float> time_s;  ///< ascending
+  std::vector<std::uint32_t> track;
+  std::vector<std::int32_t> segment;
+  std::vector<std::uint8_t> changes;  ///< whether the segments before and after the event change with time
   std::vector<KeyTrack> tracks;
-  std::vector<float> key_s, values;
-  std::vector<std::uint8_t> changes_after;  ///< segment_changes() of the segment after each key
-  Lists targets;                            ///< moving frame slots, objects or materials, by property
+  std::vector<float> pool;
+  std::vector<std::uint32_t> targets;  ///< moving frame slots, objects or materials, by property
   std::uint64_t all_tracks_cost = 0;
 
   [[nodiscard]] std::size_t track_count() const { return tracks.size(); }
-  [[nodiscard]] Keys keys(std::size_t i) const {
-    const KeyTrack& t = tracks[i];
-    return {t.property, t.interpolation, std::span(key_s).subspan(t.first_key, t.key_count),
-            std::span(values).subspan(t.first_value, t.value_count)};
+  [[nodiscard]] Keys keys(const KeyTrack& t) const {
+    const float* times = pool.data() + t.floats;
+    const float* values = times + t.key_count;
+    return {t.property,
+            t.interpolation,
+            t.components,
+            {times, t.key_count},
+            {values, std::size_t{t.key_count} * t.floats_per_key}};
   }
-  [[nodiscard]] bool changes(std::size_t i, std::int32_t segment_of_i) const {
-    return segment_of_i >= 0 &&
-           changes_after[tracks[i].first_key + static_cast<std::uint64_t>(segment_of_i)] != 0;
+  [[nodiscard]] std::span<const std::uint32_t> target_list(const KeyTrack& t) const {
+    if (t.target_count == 1) return {&t.target, 1};
+    return std::span(targets).subspan(t.target, t.target_count);
   }
 };
 
@@ -72,12 +80,11 @@ struct KeyEvents {
 struct MovingFrame {
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
   FrameId frame;
-  std::uint32_t parent = kNone;  ///< slot; none: parent_world does not move
-  bool has_parent = false;       ///< moving or not
-  glm::mat4 parent_world{1.0F};  ///< before the first key
-  Transform local;               ///< before the first key
-  bool has_matrix = false;       ///< then `matrix` stands instead of `local`
-  glm::mat4 matrix{1.0F};
+  std::uint32_t parent = kNone;  ///< slot
+  FrameId still_parent;          ///< its parent if that never moves; neither: the world
+  std::uint32_t matrix = kNone;  ///< into TimelineData::matrices: stands instead of the transform
+  std::uint32_t first_child = 0, end_child = 0;    ///< into TimelineData::children
+  std::uint32_t first_object = 0, end_object = 0;  ///< into TimelineData::frame_objects
 };
 
 struct TimelineData {
@@ -96,10 +103,12 @@ struct TimelineData {
   std::vector<glm::mat4> world_from_frame;  ///< of every frame, before the first key
   std::vector<std::uint32_t> frame_slot;    ///< into moving_frames, or kNone
   std::vector<MovingFrame> moving_frames;
-  Lists children;                          ///< slots of the frames that hang on each moving frame
-  Lists frame_objects;                     ///< places in moving_objects of what hangs on each moving frame
-  std::vector<ObjectId> moving_objects;    ///< ascending
-  std::vector<std::uint32_t> object_slot;  ///< place in moving_objects, or kNone; empty if none moves
+  std::vector<Transform> moving_local;  ///< of each moving frame, before the first key
+  std::vector<glm::mat4> matrices;
+  std::vector<std::uint32_t> children;     ///< slots, ascending by parent
+  std::vector<ObjectId> frame_objects;     ///< all moving objects, by frame
+  std::vector<ObjectId> moving_objects;    ///< the same, ascending
+  std::vector<std::uint32_t> object_slot;  ///< place in frame_objects, or kNone; empty if none moves
 
   // Materials and cameras
   std::vector<glm::vec4> base_color;  ///< before the first key

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scene/random.h"
+#include "timeline/compare.h"
 #include "timeline/player.h"
 #include "timeline/timeline.h"
 
@@ -53,12 +54,14 @@ Scene appearing(std::uint32_t tracks) {
   return s;
 }
 
-/// One frame an object, each moving (turning, too) in 1 % of the time.
-Scene moving(bool turning) {
+/// One frame an object, each gliding and turning in 1 % of the time, in order of index (neighbours in memory
+/// one after another) or all over memory.
+Scene moving(bool in_order) {
   Scene s = empty_scene();
   const float length = kDuration_s / 100;
   for (std::uint32_t i = 0; i < kObjects; ++i) {
-    const float at = (kDuration_s - length) * static_cast<float>((i * 7919ULL) % kObjects) / kObjects;
+    const float at =
+        (kDuration_s - length) * static_cast<float>(in_order ? i : (i * 7919ULL) % kObjects) / kObjects;
     Frame f;
     f.name = "f" + std::to_string(i);
     s.frames.push_back(f);
@@ -66,7 +69,6 @@ Scene moving(bool turning) {
     const std::vector<float> times{at, at + length};
     s.frame_tracks.push_back({FrameId(i), s.add_track(Property::translation, Interpolation::linear, times,
                                                       std::vector<float>{0, 0, 0, 1, 2, 3})});
-    if (!turning) continue;
     s.frame_tracks.push_back(
         {FrameId(i), s.add_track(Property::rotation, Interpolation::linear, times,
                                  std::vector<float>{0, 0, 0, 1, 0, 0.70710678F, 0, 0.70710678F})});
@@ -166,19 +168,33 @@ void bench(const char* title, const Scene& scene, bool with_walker) {
   far.seconds = cpu_s() - begin;
   far.steps = 20;
   print("random seeks", far, peer);
+  if (!timeline->moving_objects().empty()) return;
   begin = cpu_s();
   for (int i = 0; i < 1000; ++i) player.seek(i % 2 == 0 ? 41.5 : 41.6);
   std::printf("  %-34s %10.3f us\n", "step that changes nothing", 1e3 * (cpu_s() - begin));
 }
 
+void bench_compare() {
+  const Scene scene = appearing(4096);
+  const double begin = cpu_s();
+  const Comparison result = compare(scene, scene);
+  std::printf("compare two scenes of 1 000 000 objects\n  %-34s %10.3f s  (%llu times, %s)\n", "4096 moments",
+              cpu_s() - begin, static_cast<unsigned long long>(result.times_compared),
+              result.equal() ? "equal" : "DIFFERENT");
+}
+
 }  // namespace
 }  // namespace scenegen::timeline
 
-int main() {
+/// Without an argument all parts, else those named by number.
+int main(int argc, char** argv) {
   using namespace scenegen::timeline;
-  bench("1 000 000 objects appear, 4096 shared tracks", appearing(4096), true);
-  bench("1 000 000 objects appear, a track each", appearing(kObjects), true);
-  bench("1 000 000 objects glide one after another (LINEAR translation)", moving(false), false);
-  bench("1 000 000 objects glide and turn (LINEAR translation, rotation)", moving(true), false);
+  const std::string parts = argc > 1 ? argv[1] : "12345";
+  const auto wanted = [&](char part) { return parts.find(part) != std::string::npos; };
+  if (wanted('1')) bench("1 000 000 objects appear, 4096 shared tracks", appearing(4096), true);
+  if (wanted('2')) bench("1 000 000 objects appear, a track each", appearing(kObjects), true);
+  if (wanted('3')) bench("1 000 000 objects glide and turn (LINEAR), in order of index", moving(true), false);
+  if (wanted('4')) bench("1 000 000 objects glide and turn (LINEAR), in random order", moving(false), false);
+  if (wanted('5')) bench_compare();
   return EXIT_SUCCESS;
 }
