@@ -397,6 +397,19 @@ TEST_CASE("times are clamped, NaN is 0") {
   REQUIRE(p.advance(-99.0).time_s == 0.0);
 }
 
+TEST_CASE("the scale of a camera is ignored") {
+  Scene s = one_object();
+  s.frames[0].local.scale = glm::vec3(2.0F, 3.0F, 4.0F);
+  s.cameras.resize(2);
+  s.cameras[0].frame_from_camera.scale = glm::vec3(3.0F);
+  s.cameras[1].frame_from_camera.translation_m = {1, 1, 1};
+  s.cameras[1].frame = FrameId(0);
+  const Player p(compile(s));
+  REQUIRE(p.world_from_camera(CameraId(0)) == glm::mat4(1.0F));
+  REQUIRE(p.world_from_camera(CameraId(1))[1] == glm::vec4(0, 1, 0, 0));
+  REQUIRE(p.world_from_camera(CameraId(1))[3] == glm::vec4(2, 3, 4, 1));
+}
+
 TEST_CASE("frames carry their children, objects and cameras") {
   Scene s = one_object();
   s.frames.resize(2);
