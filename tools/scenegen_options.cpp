@@ -186,7 +186,7 @@ std::vector<Conflict> conflicts(const GenerateRequest& r) {
   }
   if (!r.town.building_model.empty()) {
     refuse({"--brick", "--building-size", "--floor-courses", "--floors", "--partitions", "--windows",
-            "--window"},
+            "--window", "--roof", "--extras", "--extra-model"},
            "cannot be used with --building-model, which replaces the bricks and their rooms");
   }
   if (!r.town.windows) refuse({"--window"}, "cannot be used with --windows off");

@@ -108,6 +108,9 @@ const Case kWrongCalls[] = {
     {"-o town/", kIo, "~town/: cannot be written: "},
     {"--report missing/r.json", kIo, "missing/r.json: cannot be written: No such file or directory"},
     {"--config missing.json", kIo, "missing.json: cannot be read"},
+    {"--extras 1 --extra-model missing.glb", kIo, "~missing.glb"},
+    {"--building-model missing.glb", kIo, "~missing.glb"},
+    {"--building-model missing.glb --extras 1", kUsage, "~--extras: cannot be used with --building-model"},
     {"--extras 1 --extra-model sphere:0", kUsage, "~sphere:0"},
     {"inspect missing.glb", kIo, "~missing.glb: "},
     {"inspect .", kIo, "~.: "},
@@ -121,6 +124,28 @@ TEST_CASE("a wrong call is one line, the right exit code, and nothing else") {
   for (const Case& wrong : kWrongCalls) {
     check_case(wrong, run(SCENEGEN_PROGRAM, words(wrong.arguments), {.folder = folder.path()}));
     CHECK(folder.entries().empty());
+  }
+}
+
+TEST_CASE("an option that could have no effect is refused") {
+  const std::vector<std::string> of_bricks = words(
+      "--brick=1x1x1 --building-size=9x9 --floor-courses=9 --floors=2 --partitions=off --windows=off "
+      "--window=1x1 --roof=flat --extras=1 --extra-model=box");
+  for (const std::string& option : of_bricks) {
+    check_case({option.c_str(), kUsage, "~ cannot be used with --building-model"},
+               run(SCENEGEN_PROGRAM, {"--building-model", "missing.glb", option}));
+    check_case({option.c_str(), kUsage, "~ cannot be used with --test-set"},
+               run(SCENEGEN_PROGRAM, {"--test-set", "5", option}));
+  }
+  for (const std::string& option :
+       words("--grid=2x2 --spacing=1 --ground=off --building-model=missing.glb")) {
+    check_case({option.c_str(), kUsage, "~ cannot be used with --test-set"},
+               run(SCENEGEN_PROGRAM, {"--test-set", "5", option}));
+  }
+  for (const std::string& option :
+       words("--order=+x+y+z --cells=2x2x2 --interval=1 --hold=1 --coherence=1 --visibility=scale")) {
+    check_case({option.c_str(), kUsage, "~ cannot be used with --curve none"},
+               run(SCENEGEN_PROGRAM, {"--curve", "none", option}));
   }
 }
 
@@ -172,6 +197,14 @@ TEST_CASE("a full disk under stdout is an error") {
   for (const char* arguments :
        {"-o -", "--help", "--version", "--dump-config", "--dry-run -q --format json"}) {
     check_case({arguments, kIo, "~No space left on device"}, run(SCENEGEN_PROGRAM, words(arguments), full));
+  }
+}
+
+TEST_CASE("a reader that went away is an error, not a signal") {
+  ProcessOptions closed;
+  closed.stdout_closed_pipe = true;
+  for (const char* arguments : {"-o - -q", "--help", "--dry-run -q --format json"}) {
+    check_case({arguments, kIo, "~Broken pipe"}, run(SCENEGEN_PROGRAM, words(arguments), closed));
   }
 }
 

@@ -98,6 +98,28 @@ TEST_CASE("a file says how to make it again") {
   CHECK(json::parse(read_file(folder.file("r.json")))["arguments"] == inspected["arguments"]);
 }
 
+TEST_CASE("model files stand in for buildings and extra objects") {
+  const TemporaryFolder folder;
+  made_by(folder, "--floors 1 --curve none --layout nodes -o model.glb");
+  for (const char* arguments : {"--building-model model.glb --grid 3x2",
+                                "--extras 1 --extra-model model.glb --building-size 20x20"}) {
+    INFO(arguments);
+    const json predicted = json_of(folder, std::string(arguments) + " --dry-run");
+    const json made = json_of(folder, std::string(arguments) + " -o a.glb");
+    for (const char* key : {"objects", "vertices", "triangles", "moments", "bytes"}) {
+      INFO(key);
+      CHECK(predicted[key] == made[key]);
+    }
+    const std::uint64_t of_model = json_of(folder, "inspect model.glb")["objects"];
+    CHECK(made["objects"].get<std::uint64_t>() >= 3 * of_model);
+    const std::vector<std::string> stored = json_of(folder, "inspect a.glb")["arguments"];
+    std::vector<std::string> again = stored;
+    again.insert(again.end(), {"-o", "b.glb"});
+    REQUIRE(run(SCENEGEN_PROGRAM, again, {.folder = folder.path()}).code == 0);
+    CHECK((read_file(folder.file("a.glb")) == read_file(folder.file("b.glb"))));
+  }
+}
+
 TEST_CASE("a dry run says what generating gives and writes nothing") {
   const TemporaryFolder folder;
   for (const char* arguments : {"--grid 2x1", "--grid 1x3 --windows off --partitions off --ground off",

@@ -35,6 +35,12 @@ void redirect(const char* path, int flags, int target) {
   redirect("/dev/null", O_RDONLY, STDIN_FILENO);
   redirect(out.c_str(), O_WRONLY | O_CREAT, STDOUT_FILENO);
   redirect(err.c_str(), O_WRONLY | O_CREAT, STDERR_FILENO);
+  if (options.stdout_closed_pipe) {
+    int ends[2];
+    if (::pipe(ends) != 0 || ::dup2(ends[1], STDOUT_FILENO) < 0) ::_exit(126);
+    (void)::close(ends[0]);
+    (void)::close(ends[1]);
+  }
   if (::chdir(options.folder.c_str()) != 0) ::_exit(126);
   limit(RLIMIT_FSIZE, options.most_file_bytes);
   limit(RLIMIT_AS, options.most_memory_bytes);

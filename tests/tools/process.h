@@ -11,6 +11,7 @@ namespace scenegen::test {
 struct ProcessOptions {
   std::string folder = ".";                             ///< working folder
   std::string stdout_path = {};                         ///< send stdout there instead of catching it
+  bool stdout_closed_pipe = false;                      ///< stdout is a pipe that nobody reads
   std::optional<std::uint64_t> most_file_bytes = {};    ///< RLIMIT_FSIZE: a full disk
   std::optional<std::uint64_t> most_memory_bytes = {};  ///< RLIMIT_AS
 };
