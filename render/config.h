@@ -1,0 +1,22 @@
+// Every limit and fixed size of the renderer in one place, each with what it costs.
+#pragma once
+
+#include <cstdint>
+
+namespace scenegen::render {
+
+// Frames the processor may be ahead of the device: one staging ring, command pool and set of readback buffers
+// each.
+constexpr std::uint32_t kFramesInFlight = 2;
+// Device memory comes in blocks of this size; larger resources get a block of their own.
+constexpr std::uint64_t kMemoryBlockBytes = 64ULL << 20;
+// Staging for dirty records, per frame in flight; grows to what one frame needed.
+constexpr std::uint64_t kStagingBytes = 1ULL << 20;
+// Uploading geometry and textures goes through one buffer of this size.
+constexpr std::uint64_t kUploadBytes = 32ULL << 20;
+// Side of the shadow map: 4 B a texel, 36 MiB.
+constexpr std::uint32_t kShadowMapSide = 3072;
+// Textures above this side are halved until they fit: 4096^2 RGBA8 with mipmaps is 85 MiB.
+constexpr std::uint32_t kMaxTextureSide = 8192;
+
+}  // namespace scenegen::render

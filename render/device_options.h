@@ -1,0 +1,30 @@
+// Which Vulkan device to use, without Vulkan's headers.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scene/result.h"
+
+namespace scenegen::render {
+
+struct DeviceOptions {
+  std::string
+      wanted;  ///< index, or part of the name (case does not matter); empty: a discrete GPU if there is one
+  bool validation = false;  ///< Khronos validation layer with synchronization validation; an error without it
+};
+
+struct DeviceInfo {
+  std::uint32_t index = 0;
+  std::string name;
+  std::string type;    ///< "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
+  std::string driver;  ///< "NVIDIA 580.65.06"
+  std::string lacks;   ///< why it cannot be used; empty when it can
+};
+
+/// Every Vulkan device there is, also those that cannot be used. Error (no_device): no Vulkan loader or
+/// instance.
+[[nodiscard]] Result<std::vector<DeviceInfo>> list_devices();
+
+}  // namespace scenegen::render

@@ -1,0 +1,73 @@
+#include "render/passes/draw_recorder.h"
+
+#include <bit>
+
+namespace scenegen::render {
+
+DrawRecorder::DrawRecorder(const vk::raii::CommandBuffer& commands, vkr::Pipelines& pipelines,
+                           const GpuScene& gpu, const DrawScene& scene, vkr::PassKind pass)
+    : commands_(commands), pipelines_(pipelines), gpu_(gpu), scene_(scene), pass_(pass) {
+  gpu_.bind_geometry(commands_);
+  gpu_.bind_frame_set(commands_, pipelines_.layout());
+  commands_.setCullMode(cull_);
+  commands_.setFrontFace(front_);
+}
+
+void DrawRecorder::bind_batch(std::uint32_t batch) {
+  batch_ = batch;
+  const DrawState& state = scene_.batches()[batch].state;
+  const bool reads_textures =
+      state.texture_set != 0 && (pass_ == vkr::PassKind::color || state.alpha == AlphaMode::mask);
+  const vk::Pipeline pipeline = pipelines_.get({pass_, state.alpha, state.kind, reads_textures});
+  if (pipeline != pipeline_) commands_.bindPipeline(vk::PipelineBindPoint::eGraphics, pipeline);
+  pipeline_ = pipeline;
+  const std::uint32_t set = reads_textures ? state.texture_set : 0;
+  if (set != texture_set_) gpu_.bind_texture_set(commands_, pipelines_.layout(), set);
+  texture_set_ = set;
+}
+
+void DrawRecorder::set_winding(std::uint32_t slot, const DrawState& state) {
+  using Cull = vk::CullModeFlagBits;
+  // Both sides cast shadows: thin walls and open meshes leak no light.
+  const bool both = state.double_sided || pass_ == vkr::PassKind::shadow;
+  const vk::CullModeFlags cull = both ? vk::CullModeFlags{} : vk::CullModeFlags{Cull::eBack};
+  if (cull != cull_) commands_.setCullMode(cull_ = cull);
+  const vk::FrontFace front =
+      scene_.mirrored(slot) ? vk::FrontFace::eClockwise : vk::FrontFace::eCounterClockwise;
+  if (front != front_) commands_.setFrontFace(front_ = front);
+}
+
+void DrawRecorder::draw_run(std::uint32_t first, std::uint32_t count) {
+  const DrawPrimitive& primitive = scene_.primitive(first);
+  if (primitive.batch != batch_) bind_batch(primitive.batch);
+  set_winding(first, scene_.batches()[primitive.batch].state);
+  const GeometryRange& range = gpu_.range(primitive.geometry);
+  if (range.index_count == 0) return;
+  commands_.drawIndexed(range.index_count, count, range.first_index, range.vertex_offset, first);
+  ++draws_;
+  if (range.kind == PrimitiveKind::triangles) triangles_ += std::uint64_t{range.index_count / 3} * count;
+}
+
+void record_all_solid(DrawRecorder& recorder, const DrawScene& scene) {
+  std::uint32_t run = 0;
+  std::uint32_t length = 0;
+  const auto words = scene.visible().words();
+  for (std::size_t w = 0; w < words.size(); ++w) {
+    for (std::uint64_t bits = words[w]; bits != 0; bits &= bits - 1) {
+      const auto slot = static_cast<std::uint32_t>(w * 64 + static_cast<unsigned>(std::countr_zero(bits)));
+      const DrawPrimitive& primitive = scene.primitive(slot);
+      if (scene.batches()[primitive.batch].state.alpha == AlphaMode::blend) continue;
+      if (length > 0 && slot == run + length && &scene.primitive(run) == &primitive &&
+          scene.mirrored(run) == scene.mirrored(slot)) {
+        ++length;
+        continue;
+      }
+      if (length > 0) recorder.draw_run(run, length);
+      run = slot;
+      length = 1;
+    }
+  }
+  if (length > 0) recorder.draw_run(run, length);
+}
+
+}  // namespace scenegen::render

@@ -1,0 +1,47 @@
+// Records draws of slots into a pass that has begun, binding only what changes from one to the next.
+#pragma once
+
+#include <cstdint>
+#include <vulkan/vulkan_raii.hpp>
+
+#include "render/draw_scene.h"
+#include "render/gpu_scene.h"
+#include "render/vk/pipelines.h"
+
+namespace scenegen::render {
+
+class DrawRecorder {
+ public:
+  DrawRecorder(const vk::raii::CommandBuffer& commands, vkr::Pipelines& pipelines, const GpuScene& gpu,
+               const DrawScene& scene, vkr::PassKind pass);
+
+  void draw(std::uint32_t slot) { draw_run(slot, 1); }
+  /// Slots [first, first + count) at once; they must share a primitive and whether they are mirrored.
+  void draw_run(std::uint32_t first, std::uint32_t count);
+
+  [[nodiscard]] std::uint64_t draws() const { return draws_; }
+  [[nodiscard]] std::uint64_t triangles() const { return triangles_; }
+
+ private:
+  void bind_batch(std::uint32_t batch);
+  void set_winding(std::uint32_t slot, const DrawState& state);
+
+  const vk::raii::CommandBuffer& commands_;
+  vkr::Pipelines& pipelines_;
+  const GpuScene& gpu_;
+  const DrawScene& scene_;
+  vkr::PassKind pass_;
+  vk::Pipeline pipeline_;
+  std::uint32_t batch_ = 0xFFFFFFFFU;
+  std::uint32_t texture_set_ = 0xFFFFFFFFU;
+  vk::CullModeFlags cull_;
+  vk::FrontFace front_ = vk::FrontFace::eCounterClockwise;
+  std::uint64_t draws_ = 0;
+  std::uint64_t triangles_ = 0;
+};
+
+/// Every visible opaque and masked slot, neighbours with the same primitive as one instanced draw: for passes
+/// that no strategy plans (the shadow map).
+void record_all_solid(DrawRecorder& recorder, const DrawScene& scene);
+
+}  // namespace scenegen::render

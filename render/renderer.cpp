@@ -1,0 +1,311 @@
+#include "render/renderer.h"
+
+#include <cassert>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <deque>
+#include <optional>
+
+#include "render/config.h"
+#include "render/draw_scene.h"
+#include "render/gpu_scene.h"
+#include "render/passes/draw_recorder.h"
+#include "render/passes/targets.h"
+#include "render/strategy/strategy.h"
+
+namespace scenegen::render {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// The light of every picture: a sun over the viewer's left shoulder (seen from the default view), so that one
+// face of a building is bright, the other lies in the blue light of the sky.
+const glm::vec3 kToSun = glm::normalize(glm::vec3(-0.42F, 0.62F, 0.66F));
+constexpr glm::vec3 kSunRadiance{3.45F, 3.1F, 2.6F};
+constexpr glm::vec3 kSkyZenith{0.26F, 0.46F, 0.86F};
+constexpr glm::vec3 kSkyHorizon{0.78F, 0.88F, 0.98F};
+constexpr glm::vec3 kGround{0.36F, 0.33F, 0.30F};
+constexpr float kExposure = 0.82F;
+
+CameraBlock camera_block(const View& view, const Box& scene_m, bool shadows) {
+  CameraBlock c{};
+  c.clip_from_world = view.clip_from_world;
+  if (view.lens.orthographic) {
+    c.world_from_clip[2] = glm::vec4(view.forward(), 0.0F);
+    c.eye_m = glm::vec4(-view.forward(), 0.0F);
+  } else {
+    const float ty = 1.0F / -view.clip_from_camera[1][1];  // clip y runs down
+    const float tx = 1.0F / view.clip_from_camera[0][0];
+    c.world_from_clip[0] = view.world_from_camera[0] * tx;
+    c.world_from_clip[1] = -view.world_from_camera[1] * ty;
+    c.world_from_clip[2] = glm::vec4(view.forward(), 0.0F);
+    c.eye_m = glm::vec4(view.eye_m(), 1.0F);
+  }
+  c.shadow_from_world = shadow_clip_from_world(view, scene_m, kToSun, kShadowMapSide);
+  const float scale =
+      glm::length(glm::vec3(c.shadow_from_world[0][0], c.shadow_from_world[1][0], c.shadow_from_world[2][0]));
+  c.to_sun = glm::vec4(kToSun, shadows ? 1.0F : 0.0F);
+  c.sun_radiance = glm::vec4(kSunRadiance, kExposure);
+  c.sky_zenith = glm::vec4(kSkyZenith, 2.0F / (scale * static_cast<float>(kShadowMapSide)));
+  c.sky_horizon = glm::vec4(kSkyHorizon, 1.0F / static_cast<float>(kShadowMapSide));
+  c.ground = glm::vec4(kGround, 0.0F);
+  return c;
+}
+
+[[noreturn]] void abort_lost_device(const std::exception& e, const DeviceInfo& device) {
+  std::fprintf(stderr, "error: the Vulkan device '%s' was lost: %s\n", device.name.c_str(), e.what());
+  std::fflush(stderr);
+  std::_Exit(static_cast<int>(ErrorKind::no_device));
+}
+
+}  // namespace
+
+struct Renderer::State {
+  // In order of construction; destroyed backwards.
+  RendererOptions options;
+  std::unique_ptr<vkr::Device> device;
+  std::optional<vkr::Memory> memory;
+  std::optional<vkr::Pipelines> pipelines;
+  std::optional<DrawScene> scene;
+  std::optional<GpuScene> gpu;
+  std::unique_ptr<Strategy> strategy;
+  std::optional<Target> color, ids, shadow;
+  std::optional<vkr::FrameRing> ring;
+  struct Unfinished {
+    vkr::Frame* frame;
+    FrameReport report;
+  };
+  std::deque<Unfinished> unfinished;
+
+  void build(const Scene& source, const timeline::Player& player);
+  vkr::Buffer& readback(vkr::Buffer& buffer) const;
+  void update(const timeline::ChangeSet& changes, const timeline::Player& player);
+  void record_shadows(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report);
+  void record_color(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report);
+  void record_ids(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report);
+  void submit(const timeline::ChangeSet& changes, const timeline::Player& player, const View& view);
+  void finish(FrameResult& out);
+  /// Runs `body`; what Vulkan throws becomes an error, or the end of the program when the device is lost.
+  template <class Body>
+  Result<void> guarded(const Body& body) const;
+};
+
+template <class Body>
+Result<void> Renderer::State::guarded(const Body& body) const {
+  try {
+    body();
+    return {};
+  } catch (const vk::DeviceLostError& e) {
+    abort_lost_device(e, device->info);
+  } catch (const vk::SystemError& e) {
+    return fail(ErrorKind::no_device, "device '" + device->info.name + "'", e.what());
+  }
+}
+
+void Renderer::State::build(const Scene& source, const timeline::Player& player) {
+  const vk::Extent2D extent(options.size.x, options.size.y);
+  const auto samples = options.samples == 4 ? vk::SampleCountFlagBits::e4 : vk::SampleCountFlagBits::e1;
+  const TextureSets sets = texture_sets(source);
+  memory.emplace(*device);
+  pipelines.emplace(*device, samples);
+  scene.emplace(source, player, sets.of_material);
+  gpu.emplace(*device, *memory, *pipelines, source, sets);
+  gpu->upload_records(scene->all_records(player));
+  for (std::uint32_t i = 0; i < source.materials.size(); ++i) {
+    const MaterialId id(i);
+    if (player.base_color(id) != source.materials[i].base_color ||
+        player.emissive(id) != source.materials[i].emissive)
+      gpu->set_material_colors(id, player.base_color(id), player.emissive(id));
+  }
+  if (options.outputs.color)
+    color = make_target(*device, *memory, *pipelines, vkr::PassKind::color, extent, samples);
+  if (options.outputs.ids || options.outputs.depth)
+    ids = make_target(*device, *memory, *pipelines, vkr::PassKind::ids, extent, vk::SampleCountFlagBits::e1);
+  // Without shadows the map is one texel: every descriptor must name something.
+  const std::uint32_t side = options.shadows && options.outputs.color ? kShadowMapSide : 1;
+  shadow = make_target(*device, *memory, *pipelines, vkr::PassKind::shadow, {side, side},
+                       vk::SampleCountFlagBits::e1);
+  gpu->bind_shadow_map(shadow->depth);
+  StrategyOptions how;
+  how.reversed = options.reversed;
+  strategy = find_strategy(options.strategy)->make(*scene, how);
+  ring.emplace(*device, kFramesInFlight);
+}
+
+vkr::Buffer& Renderer::State::readback(vkr::Buffer& buffer) const {
+  const std::uint64_t bytes = std::uint64_t{4} * options.size.x * options.size.y;
+  if (buffer.bytes < bytes)
+    buffer = const_cast<vkr::Memory&>(*memory).buffer(bytes, vk::BufferUsageFlagBits::eTransferDst,
+                                                      vkr::MemoryUse::readback);
+  return buffer;
+}
+
+void Renderer::State::update(const timeline::ChangeSet& changes, const timeline::Player& player) {
+  scene->apply(changes, player);
+  strategy->update(changes);
+  for (const MaterialId id : changes.recolored)
+    gpu->set_material_colors(id, player.base_color(id), player.emissive(id));
+}
+
+void Renderer::State::record_shadows(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report) {
+  begin_pass(frame.commands, *pipelines, *shadow, barriers);
+  if (options.shadows) {
+    DrawRecorder recorder(frame.commands, *pipelines, *gpu, *scene, vkr::PassKind::shadow);
+    record_all_solid(recorder, *scene);
+    report.draws += recorder.draws();
+    report.triangles += recorder.triangles();
+  }
+  frame.commands.endRenderPass();
+  barriers.image(shadow->depth, vkr::Use::sampled).flush(frame.commands);
+}
+
+void Renderer::State::record_color(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report) {
+  begin_pass(frame.commands, *pipelines, *color, barriers);
+  DrawRecorder solid(frame.commands, *pipelines, *gpu, *scene, vkr::PassKind::color);
+  strategy->record(solid, DrawPart::solid);
+  frame.commands.setCullMode(vk::CullModeFlagBits::eNone);
+  frame.commands.bindPipeline(vk::PipelineBindPoint::eGraphics, pipelines->sky());
+  frame.commands.draw(3, 1, 0, 0);
+  DrawRecorder blended(frame.commands, *pipelines, *gpu, *scene, vkr::PassKind::color);
+  strategy->record(blended, DrawPart::blended);
+  frame.commands.endRenderPass();
+  record_readback(frame.commands, color->result(), readback(frame.color), barriers);
+  report.draws += solid.draws() + blended.draws() + 1;
+  report.triangles += solid.triangles() + blended.triangles();
+}
+
+void Renderer::State::record_ids(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report) {
+  begin_pass(frame.commands, *pipelines, *ids, barriers);
+  DrawRecorder recorder(frame.commands, *pipelines, *gpu, *scene, vkr::PassKind::ids);
+  strategy->record(recorder, DrawPart::solid);
+  frame.commands.endRenderPass();
+  if (options.outputs.ids) record_readback(frame.commands, ids->color, readback(frame.ids), barriers);
+  if (options.outputs.depth) record_readback(frame.commands, ids->depth, readback(frame.depth), barriers);
+  report.draws += recorder.draws();
+  report.triangles += recorder.triangles();
+}
+
+void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline::Player& player,
+                             const View& view) {
+  FrameReport report;
+  report.time_s = changes.time_s;
+  report.changed = changes.count();
+
+  auto start = Clock::now();
+  update(changes, player);
+  report.update_ms = ms_since(start);
+
+  start = Clock::now();
+  const PlanCounters plan = strategy->plan(view);
+  report.plan_ms = ms_since(start);
+
+  start = Clock::now();
+  vkr::Frame& frame = ring->begin();
+  vkr::Barriers barriers(options.full_barriers);
+  const CameraBlock camera = camera_block(view, scene->bounds_m(), options.shadows);
+  report.uploaded_bytes = gpu->record_updates(frame, barriers, camera, *scene);
+  scene->clear_dirty();
+  if (options.outputs.color) {
+    record_shadows(frame, barriers, report);
+    record_color(frame, barriers, report);
+  }
+  if (options.outputs.ids || options.outputs.depth) record_ids(frame, barriers, report);
+  report.record_ms = ms_since(start);
+
+  start = Clock::now();
+  ring->submit(frame);
+  report.submit_ms = ms_since(start);
+  report.objects = scene->object_count();
+  report.visible = scene->visible_object_count();
+  report.tested = plan.tested;
+  report.drawn = plan.drawn;
+  unfinished.push_back({&frame, report});
+}
+
+void Renderer::State::finish(FrameResult& out) {
+  assert(!unfinished.empty());
+  auto [frame, report] = unfinished.front();
+  unfinished.pop_front();
+  auto start = Clock::now();
+  ring->wait(*frame);
+  report.wait_ms = ms_since(start);
+  report.gpu_ms = ring->gpu_ms(*frame).value_or(-1.0);
+  start = Clock::now();
+  const std::size_t pixels = std::size_t{options.size.x} * options.size.y;
+  const auto copy = [&](auto& to, const vkr::Buffer& from, bool wanted) {
+    to.resize(wanted ? pixels * 4 / sizeof(to[0]) : 0);
+    if (wanted) std::memcpy(to.data(), from.mapped(), pixels * 4);
+  };
+  copy(out.rgba, frame->color, options.outputs.color);
+  copy(out.ids, frame->ids, options.outputs.ids);
+  copy(out.depth, frame->depth, options.outputs.depth);
+  report.readback_ms = ms_since(start);
+  out.report = report;
+}
+
+Result<Renderer> Renderer::create(const Scene& scene, const timeline::Player& player,
+                                  const RendererOptions& options) {
+  if (options.samples != 1 && options.samples != 4)
+    return fail(ErrorKind::usage, "--samples", std::to_string(options.samples) + "; 1 or 4");
+  if (find_strategy(options.strategy) == nullptr)
+    return fail(ErrorKind::usage, "--strategy", "unknown value '" + options.strategy + "'");
+  auto state = std::make_unique<State>();
+  state->options = options;
+  auto device = vkr::open_device(options.device);
+  if (!device) return forward_error(device);
+  state->device = std::move(*device);
+  const std::uint32_t most = state->device->properties.limits.maxFramebufferWidth;
+  if (options.size.x == 0 || options.size.y == 0 || options.size.x > most ||
+      options.size.y > state->device->properties.limits.maxFramebufferHeight)
+    return fail(ErrorKind::usage, "--size",
+                "each side must be 1 to " + std::to_string(most) + " on this device");
+  Result<void> built = state->guarded([&] { state->build(scene, player); });
+  if (!built) return forward_error(built);
+  return Renderer(std::move(state));
+}
+
+Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+std::uint32_t Renderer::most_in_flight() {
+  return kFramesInFlight;
+}
+std::uint32_t Renderer::in_flight() const {
+  return static_cast<std::uint32_t>(state_->unfinished.size());
+}
+
+Result<void> Renderer::submit(const timeline::ChangeSet& changes, const timeline::Player& player,
+                              const View& view) {
+  assert(in_flight() < most_in_flight());
+  return state_->guarded([&] { state_->submit(changes, player, view); });
+}
+
+Result<void> Renderer::finish(FrameResult& out) {
+  return state_->guarded([&] { state_->finish(out); });
+}
+
+const DeviceInfo& Renderer::device() const {
+  return state_->device->info;
+}
+glm::uvec2 Renderer::size() const {
+  return state_->options.size;
+}
+const std::vector<std::string>& Renderer::warnings() const {
+  return state_->gpu->warnings();
+}
+std::uint64_t Renderer::device_bytes() const {
+  return state_->memory->block_bytes();
+}
+std::vector<std::string> Renderer::take_validation_messages() {
+  return state_->device->take_messages();
+}
+
+}  // namespace scenegen::render

@@ -1,0 +1,99 @@
+// Draws a scene as its timeline plays. One frame, in named phases: update, plan, record, submit, finish.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "render/device_options.h"
+#include "render/view.h"
+#include "scene/result.h"
+#include "timeline/player.h"
+
+namespace scenegen::render {
+
+/// Which pictures a frame makes.
+struct Outputs {
+  bool color = true;
+  bool ids = false;
+  bool depth = false;
+};
+
+struct RendererOptions {
+  DeviceOptions device;
+  glm::uvec2 size{1280, 720};
+  std::uint32_t samples = 4;  ///< of the colour picture: 1 or 4
+  Outputs outputs;
+  std::string strategy = "inline";
+  bool reversed = false;  ///< solid objects in reverse order: finds pixels where equal depths meet
+  bool shadows = true;
+  bool full_barriers = false;  ///< a full barrier at every step: must give equal pictures
+};
+
+/// What one frame did; times in ms.
+struct FrameReport {
+  double time_s = 0;
+  std::uint64_t objects = 0;
+  std::uint64_t changed = 0;    ///< entries of the ChangeSet
+  std::uint64_t visible = 0;    ///< objects visible by timeline
+  std::uint64_t tested = 0;     ///< boxes tested against the frustum
+  std::uint64_t drawn = 0;      ///< slots (object x primitive) that the strategy drew in the colour pass
+  std::uint64_t draws = 0;      ///< draw commands of all passes
+  std::uint64_t triangles = 0;  ///< of all passes
+  std::uint64_t uploaded_bytes = 0;
+  double update_ms = 0;
+  double plan_ms = 0;  ///< culling and sorting
+  double record_ms = 0;
+  double submit_ms = 0;
+  double wait_ms = 0;  ///< what the processor waited for the device
+  double gpu_ms = -1;  ///< between the frame's timestamps; -1 when the device has none
+  double readback_ms = 0;
+};
+
+/// Rows from the top. Pictures that were not asked for are empty.
+struct FrameResult {
+  FrameReport report;
+  std::vector<std::uint8_t> rgba;  ///< sRGB
+  std::vector<std::uint32_t> ids;  ///< ObjectId of the nearest opaque or masked object; 0xFFFFFFFF: none
+  std::vector<float> depth;  ///< of the same, as in the depth buffer: View::distance_m makes metres of it
+};
+
+/// Not for several threads at once. A lost device ends the program with a message (there is nothing sensible
+/// to go on with).
+class Renderer {
+ public:
+  /// Uploads the scene in the state of `player`. Errors: no_device, usage (unknown strategy, device, sample
+  /// count). `scene` is not needed afterwards.
+  [[nodiscard]] static Result<Renderer> create(const Scene& scene, const timeline::Player& player,
+                                               const RendererOptions& options);
+  ~Renderer();
+  Renderer(Renderer&&) noexcept;
+  Renderer& operator=(Renderer&&) noexcept;
+
+  /// Frames that may be submitted and not finished.
+  [[nodiscard]] static std::uint32_t most_in_flight();
+  [[nodiscard]] std::uint32_t in_flight() const;
+  /// Draws the state of `player`, which differs from the last submitted one by `changes`. Must not be called
+  /// with most_in_flight() frames unfinished.
+  Result<void> submit(const timeline::ChangeSet& changes, const timeline::Player& player, const View& view);
+  /// Waits for the oldest unfinished frame and copies its pictures; reuses the vectors of `out`.
+  Result<void> finish(FrameResult& out);
+
+  [[nodiscard]] const DeviceInfo& device() const;
+  [[nodiscard]] glm::uvec2 size() const;
+  /// Images that could not be decoded and the like.
+  [[nodiscard]] const std::vector<std::string>& warnings() const;
+  /// Device memory taken from the driver, bytes.
+  [[nodiscard]] std::uint64_t device_bytes() const;
+  /// What the validation layer reported so far; forgets it.
+  [[nodiscard]] std::vector<std::string> take_validation_messages();
+
+ private:
+  struct State;
+  explicit Renderer(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace scenegen::render

@@ -1,0 +1,154 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "common.glsl"
+#include "material.glsl"
+
+layout(set = 0, binding = 3) uniform sampler2DShadow shadow_map;
+
+layout(location = 0) in vec3 in_world;
+layout(location = 1) in vec3 in_normal;
+layout(location = 2) in vec4 in_tangent;
+layout(location = 3) in vec4 in_texcoords;
+layout(location = 4) in vec4 in_color;
+layout(location = 5) flat in uint in_material;
+
+layout(location = 0) out vec4 out_color;
+
+const float kPi = 3.14159265358979;
+
+struct Surface {
+  vec3 normal;
+  vec3 flat_normal;
+  vec3 diffuse;
+  vec3 f0;
+  float roughness;
+  float occlusion;
+};
+
+// Normal from the map; without tangents in the file, from derivatives (Schüler 2013, "Followup: Normal mapping
+// without precomputed tangents").
+vec3 mapped_normal(MaterialRecord material, vec3 n) {
+  vec2 uv = texture_place(material, kTextureNormal, in_texcoords);
+  vec3 texel = texture(textures[2], uv).xyz * 2.0 - 1.0;
+  vec3 dpx = dFdx(in_world);
+  vec3 dpy = dFdy(in_world);
+  vec2 dux = dFdx(uv);
+  vec2 duy = dFdy(uv);
+  if (!has_texture(material, kTextureNormal)) return n;
+  texel.xy *= material.textures[kTextureNormal].row1.w;
+  if (dot(in_tangent.xyz, in_tangent.xyz) > 0.0) {
+    vec3 t = normalize(in_tangent.xyz - n * dot(in_tangent.xyz, n));
+    vec3 b = cross(n, t) * sign(in_tangent.w);
+    return normalize(mat3(t, b, n) * texel);
+  }
+  vec3 px = cross(dpy, n);
+  vec3 py = cross(n, dpx);
+  vec3 t = px * dux.x + py * duy.x;
+  // glTF: +v runs down the picture and the green channel up it, so the bitangent is against v.
+  vec3 b = -(px * dux.y + py * duy.y);
+  float largest = max(dot(t, t), dot(b, b));
+  return largest > 0.0 ? normalize(mat3(t * inversesqrt(largest), b * inversesqrt(largest), n) * texel) : n;
+}
+
+// Share of the sun that arrives: 3 x 3 bilinear comparisons.
+float sunlight(vec3 normal) {
+  if (camera.to_sun.w == 0.0) return 1.0;
+  // Away from the surface by about a texel, more at grazing light: no surface shadows itself.
+  float slope = 1.0 - clamp(dot(normal, camera.to_sun.xyz), 0.0, 1.0);
+  vec3 p = in_world + normal * (camera.sky_zenith.w * (0.7 + 1.6 * slope));
+  vec4 q = camera.shadow_from_world * vec4(p, 1.0);
+  vec2 uv = q.xy * 0.5 + 0.5;
+  if (any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return 1.0;
+  float step = camera.sky_horizon.w;
+  float sum = 0.0;
+  for (int y = -1; y <= 1; ++y) {
+    for (int x = -1; x <= 1; ++x) sum += texture(shadow_map, vec3(uv + vec2(x, y) * step, q.z));
+  }
+  return sum / 9.0;
+}
+
+// glTF 2.0 appendix B: Lambert and GGX with Smith's correlated visibility and Schlick's Fresnel.
+void sun_light(Surface s, vec3 view, out vec3 diffuse, out vec3 specular) {
+  vec3 l = camera.to_sun.xyz;
+  float nl = dot(s.normal, l);
+  diffuse = specular = vec3(0.0);
+  if (nl <= 0.0 || dot(s.flat_normal, l) <= 0.0) return;
+  vec3 h = normalize(l + view);
+  float nv = max(dot(s.normal, view), 1e-4);
+  float nh = clamp(dot(s.normal, h), 0.0, 1.0);
+  float vh = clamp(dot(view, h), 0.0, 1.0);
+  float a2 = pow(s.roughness, 4.0);
+  float k = nh * nh * (a2 - 1.0) + 1.0;
+  float distribution = a2 / (kPi * k * k);
+  float visibility =
+      0.5 / (nl * sqrt(nv * nv * (1.0 - a2) + a2) + nv * sqrt(nl * nl * (1.0 - a2) + a2));
+  vec3 fresnel = s.f0 + (1.0 - s.f0) * pow(1.0 - vh, 5.0);
+  vec3 light = camera.sun_radiance.rgb * nl * sunlight(s.flat_normal);
+  diffuse = (1.0 - fresnel) * s.diffuse / kPi * light;
+  specular = fresnel * distribution * visibility * light;
+}
+
+// Sky and ground as a hemisphere light; its mirror image with the split sum's fit of Karis 2014, "Physically
+// based shading on mobile".
+void sky_light(Surface s, vec3 view, out vec3 diffuse, out vec3 specular) {
+  vec3 above = mix(camera.sky_horizon.rgb, camera.sky_zenith.rgb, 0.55);
+  vec3 irradiance = mix(camera.ground.rgb, above, 0.5 + 0.5 * s.normal.y);
+  float nv = clamp(dot(s.normal, view), 0.0, 1.0);
+  vec4 r = s.roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
+  float a = min(r.x * r.x, exp2(-9.28 * nv)) * r.x + r.y;
+  vec2 ab = vec2(-1.04, 1.04) * a + r.zw;
+  vec3 mirrored = reflect(-view, s.normal);
+  vec3 seen = mix(sky_radiance(mirrored), irradiance, s.roughness * s.roughness);
+  diffuse = s.diffuse * irradiance * s.occlusion;
+  specular = seen * (s.f0 * ab.x + ab.y) * s.occlusion;
+}
+
+void main() {
+  MaterialRecord material = materials[in_material];
+  vec4 base = base_color(material, in_texcoords, in_color);
+  vec3 emissive = material.emissive.rgb;
+  float metallic = material.factors.x;
+  float roughness = material.factors.y;
+  float occlusion = 1.0;
+  vec3 flat_normal = gl_FrontFacing ? in_normal : -in_normal;
+  vec3 normal = flat_normal;
+  if (kTextured) {
+    // Sampled before any branch or discard: derivatives are only defined in uniform control flow.
+    vec4 mr = texture(textures[1], texture_place(material, kTextureMetallicRoughness, in_texcoords));
+    vec4 ao = texture(textures[3], texture_place(material, kTextureOcclusion, in_texcoords));
+    vec4 glow = texture(textures[4], texture_place(material, kTextureEmissive, in_texcoords));
+    normal = mapped_normal(material, flat_normal);
+    if (has_texture(material, kTextureMetallicRoughness)) {
+      metallic *= mr.b;
+      roughness *= mr.g;
+    }
+    if (has_texture(material, kTextureOcclusion))
+      occlusion = 1.0 + material.textures[kTextureOcclusion].row1.w * (ao.r - 1.0);
+    if (has_texture(material, kTextureEmissive)) emissive *= glow.rgb;
+  }
+  if (kAlphaMode == 1 && base.a < material.emissive.w) discard;
+  float alpha = kAlphaMode == 2 ? base.a : 1.0;
+
+  if ((material.flags.x & kMaterialUnlit) != 0 || dot(in_normal, in_normal) == 0.0) {
+    out_color = vec4(base.rgb * alpha, alpha);  // a colour for the screen: neither exposed nor tone-mapped
+    return;
+  }
+  vec3 view = camera.eye_m.w != 0.0 ? normalize(camera.eye_m.xyz - in_world) : camera.eye_m.xyz;
+  Surface s;
+  s.normal = normalize(normal);
+  s.flat_normal = normalize(flat_normal);
+  s.diffuse = base.rgb * (1.0 - metallic);
+  s.f0 = mix(vec3(0.04), base.rgb, metallic);
+  s.roughness = clamp(roughness, 0.045, 1.0);
+  s.occlusion = occlusion;
+  vec3 sun_diffuse, sun_specular, sky_diffuse, sky_specular;
+  sun_light(s, view, sun_diffuse, sun_specular);
+  sky_light(s, view, sky_diffuse, sky_specular);
+  // A blended surface keeps its reflections (premultiplied alpha): glass shows the sky.
+  vec3 color = (sun_diffuse + sky_diffuse + emissive) * alpha + sun_specular + sky_specular;
+  if (kAlphaMode == 2) {
+    vec3 reflection = sky_specular + sun_specular;
+    alpha = clamp(alpha + 0.5 * max(reflection.r, max(reflection.g, reflection.b)) * (1.0 - alpha), 0.0, 1.0);
+  }
+  out_color = vec4(tone_map(color * camera.sun_radiance.w), alpha);
+}

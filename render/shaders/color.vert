@@ -1,0 +1,30 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "vertex.glsl"
+
+layout(location = 0) out vec3 out_world;
+layout(location = 1) out vec3 out_normal;
+layout(location = 2) out vec4 out_tangent;
+layout(location = 3) out vec4 out_texcoords;
+layout(location = 4) out vec4 out_color;
+layout(location = 5) flat out uint out_material;
+
+void main() {
+  ObjectRecord record = objects[gl_InstanceIndex];
+  vec3 world = world_position(record);
+  gl_Position = clip_position(world);
+  gl_PointSize = 1.0;
+  mat3 m = transpose(mat3(record.world_from_object[0].xyz, record.world_from_object[1].xyz,
+                          record.world_from_object[2].xyz));
+  // Normals go by the cofactor matrix, which also serves singular ones; its sign follows the determinant.
+  mat3 cofactor = mat3(cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1]));
+  float inside_out = dot(m[0], cofactor[0]) < 0.0 ? -1.0 : 1.0;
+  vec3 normal = cofactor * in_normal.xyz * inside_out;
+  out_world = world;
+  out_normal = dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0.0);
+  vec3 tangent = m * in_tangent.xyz;
+  out_tangent = dot(tangent, tangent) > 0.0 ? vec4(normalize(tangent), in_tangent.w * inside_out) : vec4(0.0);
+  out_texcoords = vec4(in_texcoord0, in_texcoord1);
+  out_color = in_color;
+  out_material = record.material;
+}

@@ -1,0 +1,19 @@
+// The one vertex function: every pass and every pipeline places a vertex with exactly these operations.
+#include "common.glsl"
+
+layout(location = 0) in vec3 in_position;
+layout(location = 1) in vec4 in_normal;
+layout(location = 2) in vec4 in_tangent;
+layout(location = 3) in vec2 in_texcoord0;
+layout(location = 4) in vec2 in_texcoord1;
+layout(location = 5) in vec4 in_color;
+
+invariant gl_Position;
+
+vec3 world_position(ObjectRecord record) {
+  vec4 p = vec4(in_position, 1.0);
+  return vec3(dot(record.world_from_object[0], p), dot(record.world_from_object[1], p),
+              dot(record.world_from_object[2], p));
+}
+
+vec4 clip_position(vec3 world) { return camera.clip_from_world * vec4(world, 1.0); }

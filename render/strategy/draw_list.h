@@ -1,0 +1,33 @@
+// Lists of slots to draw, and how they are made: pure processor code.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "render/draw_scene.h"
+#include "render/view.h"
+
+namespace scenegen::render {
+
+/// Opaque and masked slots in slot order, and blended ones back to front. Reused from frame to frame, so that
+/// nothing is allocated in steady state.
+struct DrawList {
+  std::vector<std::uint32_t> solid;
+  std::vector<std::uint32_t> blended;
+  std::uint64_t tested = 0;  ///< boxes tested against the frustum
+
+  void clear() {
+    solid.clear();
+    blended.clear();
+    tested = 0;
+  }
+};
+
+/// Everything that is visible by timeline.
+void list_visible(const DrawScene& scene, DrawList& out);
+/// What of it touches the frustum; never misses anything (boxes and planes carry slack for rounding).
+void list_in_frustum(const DrawScene& scene, const Frustum& frustum, DrawList& out);
+/// Farthest first along the view direction, by the boxes' centres; ties by object, then slot.
+void sort_back_to_front(const DrawScene& scene, const View& view, std::vector<std::uint32_t>& slots);
+
+}  // namespace scenegen::render

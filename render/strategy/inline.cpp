@@ -1,0 +1,22 @@
+// D method 1: per-object frustum culling, every visible object recorded each frame.
+#include "render/strategy/list_strategy.h"
+
+namespace scenegen::render {
+namespace {
+
+class Inline final : public ListStrategy {
+ public:
+  using ListStrategy::ListStrategy;
+  PlanCounters plan(const View& view) override {
+    list_in_frustum(scene_, frustum_of(view.clip_from_world), list_);
+    return finish_plan(view);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Strategy> make_inline(const DrawScene& scene, const StrategyOptions& options) {
+  return std::make_unique<Inline>(scene, options);
+}
+
+}  // namespace scenegen::render

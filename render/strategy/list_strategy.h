@@ -1,0 +1,24 @@
+// What strategies that record a list of slots each frame have in common.
+#pragma once
+
+#include "render/strategy/draw_list.h"
+#include "render/strategy/strategy.h"
+
+namespace scenegen::render {
+
+/// Derived classes fill `list_` in plan() and end with finish_plan().
+class ListStrategy : public Strategy {
+ public:
+  ListStrategy(const DrawScene& scene, const StrategyOptions& options) : scene_(scene), options_(options) {}
+  void update(const timeline::ChangeSet& /*changes*/) override {}  // DrawScene's visible set is all it needs
+  void record(DrawRecorder& recorder, DrawPart part) override;
+
+ protected:
+  PlanCounters finish_plan(const View& view);
+
+  const DrawScene& scene_;
+  StrategyOptions options_;
+  DrawList list_;
+};
+
+}  // namespace scenegen::render

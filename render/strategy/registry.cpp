@@ -1,0 +1,26 @@
+#include <algorithm>
+#include <array>
+
+#include "render/strategy/strategy.h"
+
+namespace scenegen::render {
+
+std::unique_ptr<Strategy> make_brute(const DrawScene& scene, const StrategyOptions& options);
+std::unique_ptr<Strategy> make_inline(const DrawScene& scene, const StrategyOptions& options);
+
+std::span<const StrategyEntry> strategies() {
+  static constexpr std::array kEntries{
+      StrategyEntry{"brute", "every object that is visible by timeline; the reference", &make_brute},
+      StrategyEntry{"inline", "per-object frustum culling, commands recorded each frame", &make_inline},
+  };
+  return kEntries;
+}
+
+const StrategyEntry* find_strategy(std::string_view name) {
+  const auto all = strategies();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const StrategyEntry& e) { return e.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace scenegen::render

@@ -1,0 +1,98 @@
+#include "render/vk/frame_ring.h"
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+
+#include "render/config.h"
+
+namespace scenegen::render::vkr {
+
+std::byte* Staging::reserve(Memory& memory, std::uint64_t bytes) {
+  assert(used_ == 0);
+  if (buffer_.bytes < bytes) {
+    buffer_ = Buffer{};
+    buffer_ = memory.buffer(std::max({bytes + bytes / 2, kStagingBytes}),
+                            vk::BufferUsageFlagBits::eTransferSrc, MemoryUse::upload);
+  }
+  used_ = bytes;
+  return buffer_.mapped();
+}
+
+FrameRing::FrameRing(const Device& device, std::uint32_t frames) : device_(device), frames_(frames) {
+  for (Frame& f : frames_) {
+    f.pool = vk::raii::CommandPool(device.device, {{}, device.queue_family});
+    f.commands = std::move(
+        vk::raii::CommandBuffers(device.device, {*f.pool, vk::CommandBufferLevel::ePrimary, 1}).front());
+    f.fence = vk::raii::Fence(device.device, vk::FenceCreateInfo{});
+    if (device.timestamps)
+      f.timestamps = vk::raii::QueryPool(device.device, {{}, vk::QueryType::eTimestamp, 2});
+  }
+}
+
+FrameRing::~FrameRing() {
+  try {
+    wait_all();
+  } catch (const std::exception&) {  // a lost device: nothing is running any more
+  }
+}
+
+Frame& FrameRing::begin() {
+  Frame& f = frames_[next_];
+  next_ = (next_ + 1) % frames_.size();
+  wait(f);
+  f.staging.reset();
+  f.pool.reset();
+  f.commands.begin(vk::CommandBufferBeginInfo(vk::CommandBufferUsageFlagBits::eOneTimeSubmit));
+  if (device_.timestamps) {
+    f.commands.resetQueryPool(*f.timestamps, 0, 2);
+    f.commands.writeTimestamp2(vk::PipelineStageFlagBits2::eAllCommands, *f.timestamps, 0);
+  }
+  return f;
+}
+
+void FrameRing::submit(Frame& frame) {
+  if (device_.timestamps)
+    frame.commands.writeTimestamp2(vk::PipelineStageFlagBits2::eAllCommands, *frame.timestamps, 1);
+  frame.commands.end();
+  device_.queue.submit(vk::SubmitInfo({}, {}, *frame.commands), *frame.fence);
+  frame.pending = true;
+}
+
+void FrameRing::wait(Frame& frame) {
+  if (!frame.pending) return;
+  constexpr std::uint64_t kForever = std::numeric_limits<std::uint64_t>::max();
+  if (device_.device.waitForFences(*frame.fence, VK_TRUE, kForever) != vk::Result::eSuccess)
+    throw vk::DeviceLostError("waiting for a frame");
+  device_.device.resetFences(*frame.fence);
+  frame.pending = false;
+}
+
+void FrameRing::wait_all() {
+  for (Frame& f : frames_) wait(f);
+}
+
+std::optional<double> FrameRing::gpu_ms(const Frame& frame) const {
+  if (!device_.timestamps) return std::nullopt;
+  const auto [result, ticks] = frame.timestamps.getResults<std::uint64_t>(
+      0, 2, 2 * sizeof(std::uint64_t), sizeof(std::uint64_t), vk::QueryResultFlagBits::e64);
+  if (result != vk::Result::eSuccess) return std::nullopt;
+  return static_cast<double>(ticks[1] - ticks[0]) *
+         static_cast<double>(device_.properties.limits.timestampPeriod) * 1e-6;
+}
+
+void run_once(const Device& device, const std::function<void(const vk::raii::CommandBuffer&)>& record) {
+  const vk::raii::CommandPool pool(device.device, {{}, device.queue_family});
+  const vk::raii::CommandBuffers buffers(device.device, {*pool, vk::CommandBufferLevel::ePrimary, 1});
+  const vk::raii::CommandBuffer& commands = buffers.front();
+  commands.begin(vk::CommandBufferBeginInfo(vk::CommandBufferUsageFlagBits::eOneTimeSubmit));
+  record(commands);
+  commands.end();
+  const vk::raii::Fence fence(device.device, vk::FenceCreateInfo{});
+  device.queue.submit(vk::SubmitInfo({}, {}, *commands), *fence);
+  if (device.device.waitForFences(*fence, VK_TRUE, std::numeric_limits<std::uint64_t>::max()) !=
+      vk::Result::eSuccess)
+    throw vk::DeviceLostError("waiting for an upload");
+}
+
+}  // namespace scenegen::render::vkr

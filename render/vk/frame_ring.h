@@ -1,0 +1,65 @@
+// What each frame in flight owns: commands, fence, staging, timestamps, and a list of things to let go.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+#include <vulkan/vulkan_raii.hpp>
+
+#include "render/vk/memory.h"
+
+namespace scenegen::render::vkr {
+
+/// Mapped memory that is filled from the start each frame.
+class Staging {
+ public:
+  void reset() { used_ = 0; }
+  /// Space for `bytes`; grows by replacing the buffer, which is only legal before anything of this frame was
+  /// recorded from it, so ask once a frame for all of it.
+  std::byte* reserve(Memory& memory, std::uint64_t bytes);
+  [[nodiscard]] vk::Buffer buffer() const { return *buffer_.buffer; }
+  [[nodiscard]] std::uint64_t used() const { return used_; }
+
+ private:
+  Buffer buffer_;
+  std::uint64_t used_ = 0;
+};
+
+struct Frame {
+  vk::raii::CommandPool pool{nullptr};
+  vk::raii::CommandBuffer commands{nullptr};
+  vk::raii::Fence fence{nullptr};
+  vk::raii::QueryPool timestamps{nullptr};
+  Staging staging;
+  Buffer color, ids, depth;  // readback, allocated when first asked for
+  bool pending = false;      // submitted and not yet waited for
+};
+
+/// Frames are used in turn. `acquire` waits for the device only when the frame is still pending.
+class FrameRing {
+ public:
+  FrameRing(const Device& device, std::uint32_t frames);
+  ~FrameRing();
+  FrameRing(const FrameRing&) = delete;
+  FrameRing& operator=(const FrameRing&) = delete;
+
+  /// The next frame, no longer in use by the device, its commands begun.
+  Frame& begin();
+  /// Ends the commands and submits them.
+  void submit(Frame& frame);
+  /// Waits until the device is done with the frame.
+  void wait(Frame& frame);
+  void wait_all();
+  /// Milliseconds between the frame's two timestamps; none when the device has no timestamps.
+  [[nodiscard]] std::optional<double> gpu_ms(const Frame& frame) const;
+
+ private:
+  const Device& device_;
+  std::vector<Frame> frames_;
+  std::size_t next_ = 0;
+};
+
+/// Records commands, submits them and waits: for uploads before the first frame.
+void run_once(const Device& device, const std::function<void(const vk::raii::CommandBuffer&)>& record);
+
+}  // namespace scenegen::render::vkr

@@ -1,0 +1,136 @@
+#include "render/vk/memory.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "render/config.h"
+
+namespace scenegen::render::vkr {
+
+struct Allocation::Block {
+  FreeList pieces;
+  vk::raii::DeviceMemory memory{nullptr};
+  std::byte* mapped = nullptr;
+  std::uint32_t type = 0;
+  bool image = false;  // buffers and images never share a block: no bufferImageGranularity to mind
+};
+
+Allocation::~Allocation() {
+  if (block_ != nullptr) block_->pieces.release(offset_, bytes_);
+}
+
+vk::DeviceMemory Allocation::memory() const {
+  return *block_->memory;
+}
+
+std::byte* Allocation::mapped() const {
+  return block_ == nullptr || block_->mapped == nullptr ? nullptr : block_->mapped + offset_;
+}
+
+Memory::Memory(const Device& device) : device_(device) {}
+Memory::~Memory() = default;
+
+namespace {
+
+using Flag = vk::MemoryPropertyFlagBits;
+
+/// The first type that has all of the wanted properties, else all of the needed ones.
+std::uint32_t memory_type(const vk::PhysicalDeviceMemoryProperties& properties, std::uint32_t allowed,
+                          MemoryUse use) {
+  vk::MemoryPropertyFlags needed;
+  vk::MemoryPropertyFlags wanted;
+  switch (use) {
+    case MemoryUse::device:
+      wanted = Flag::eDeviceLocal;
+      break;
+    case MemoryUse::upload:
+      needed = Flag::eHostVisible | Flag::eHostCoherent;
+      break;
+    case MemoryUse::readback:
+      needed = Flag::eHostVisible | Flag::eHostCoherent;
+      wanted = Flag::eHostCached;
+      break;
+  }
+  for (const vk::MemoryPropertyFlags flags : {needed | wanted, needed}) {
+    for (std::uint32_t i = 0; i < properties.memoryTypeCount; ++i) {
+      if ((allowed >> i & 1U) != 0 && (properties.memoryTypes[i].propertyFlags & flags) == flags) return i;
+    }
+  }
+  throw vk::FeatureNotPresentError("no memory type fits");
+}
+
+}  // namespace
+
+Allocation Memory::allocate(const vk::MemoryRequirements& needs, MemoryUse use, bool image) {
+  const std::uint32_t type = memory_type(device_.memory_properties, needs.memoryTypeBits, use);
+  Allocation out;
+  out.bytes_ = needs.size;
+  const bool own_block = needs.size > kMemoryBlockBytes / 2;
+  if (!own_block) {
+    for (Allocation::Block& block : blocks_) {
+      if (block.type != type || block.image != image) continue;
+      if (const auto offset = block.pieces.allocate(needs.size, needs.alignment)) {
+        out.block_ = &block;
+        out.offset_ = *offset;
+        return out;
+      }
+    }
+  }
+  // Blocks of large resources that were freed go back to the driver before a new one is asked for.
+  blocks_.remove_if(
+      [](const Allocation::Block& b) { return b.pieces.unused() && b.pieces.size() != kMemoryBlockBytes; });
+  const std::uint64_t bytes = own_block ? needs.size : kMemoryBlockBytes;
+  Allocation::Block block{FreeList(bytes)};
+  block.memory = vk::raii::DeviceMemory(device_.device, vk::MemoryAllocateInfo(bytes, type));
+  if (device_.memory_properties.memoryTypes[type].propertyFlags & Flag::eHostVisible)
+    block.mapped = static_cast<std::byte*>(block.memory.mapMemory(0, VK_WHOLE_SIZE));
+  block.type = type;
+  block.image = image;
+  blocks_.push_back(std::move(block));
+  out.block_ = &blocks_.back();
+  out.offset_ = *blocks_.back().pieces.allocate(needs.size, needs.alignment);
+  return out;
+}
+
+Buffer Memory::buffer(std::uint64_t bytes, vk::BufferUsageFlags usage, MemoryUse use) {
+  Buffer out;
+  out.bytes = std::max<std::uint64_t>(bytes, 16);
+  out.buffer = vk::raii::Buffer(device_.device, vk::BufferCreateInfo({}, out.bytes, usage));
+  out.allocation = allocate(out.buffer.getMemoryRequirements(), use, false);
+  out.buffer.bindMemory(out.allocation.memory(), out.allocation.offset());
+  return out;
+}
+
+Image Memory::image(const ImageOptions& options) {
+  Image out;
+  out.format = options.format;
+  out.extent = options.extent;
+  out.mip_levels = options.mip_levels;
+  out.aspect = options.format == vk::Format::eD32Sfloat ? vk::ImageAspectFlagBits::eDepth
+                                                        : vk::ImageAspectFlagBits::eColor;
+  vk::ImageCreateInfo create;
+  create.imageType = vk::ImageType::e2D;
+  create.format = options.format;
+  create.extent = vk::Extent3D(options.extent, 1);
+  create.mipLevels = options.mip_levels;
+  create.arrayLayers = 1;
+  create.samples = options.samples;
+  create.tiling = vk::ImageTiling::eOptimal;
+  create.usage = options.usage;
+  out.image = vk::raii::Image(device_.device, create);
+  out.allocation = allocate(out.image.getMemoryRequirements(), MemoryUse::device, true);
+  out.image.bindMemory(out.allocation.memory(), out.allocation.offset());
+  out.view = vk::raii::ImageView(
+      device_.device,
+      vk::ImageViewCreateInfo({}, *out.image, vk::ImageViewType::e2D, options.format, {},
+                              vk::ImageSubresourceRange(out.aspect, 0, options.mip_levels, 0, 1)));
+  return out;
+}
+
+std::uint64_t Memory::block_bytes() const {
+  std::uint64_t sum = 0;
+  for (const Allocation::Block& block : blocks_) sum += block.pieces.size();
+  return sum;
+}
+
+}  // namespace scenegen::render::vkr

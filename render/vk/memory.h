@@ -1,0 +1,101 @@
+// Block suballocator for device memory, and the buffers and images that live in it.
+#pragma once
+
+#include <list>
+#include <memory>
+#include <span>
+#include <vector>
+#include <vulkan/vulkan_raii.hpp>
+
+#include "render/vk/device.h"
+#include "render/vk/free_list.h"
+#include "render/vk/use.h"
+
+namespace scenegen::render::vkr {
+
+enum class MemoryUse : std::uint8_t {
+  device,    ///< fastest for the device
+  upload,    ///< written by the processor, mapped
+  readback,  ///< read by the processor, mapped, cached where possible
+};
+
+class Memory;
+
+/// A piece of a block; gives itself back.
+class Allocation {
+ public:
+  Allocation() = default;
+  Allocation(Allocation&& other) noexcept { swap(other); }
+  Allocation& operator=(Allocation&& other) noexcept {
+    Allocation gone(std::move(other));
+    swap(gone);
+    return *this;
+  }
+  ~Allocation();
+
+  [[nodiscard]] vk::DeviceMemory memory() const;
+  [[nodiscard]] std::uint64_t offset() const { return offset_; }
+  [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+  /// First byte when the memory is mapped, else null.
+  [[nodiscard]] std::byte* mapped() const;
+
+ private:
+  friend class Memory;
+  struct Block;
+  void swap(Allocation& other) noexcept {
+    std::swap(block_, other.block_);
+    std::swap(offset_, other.offset_);
+    std::swap(bytes_, other.bytes_);
+  }
+  Block* block_ = nullptr;
+  std::uint64_t offset_ = 0;
+  std::uint64_t bytes_ = 0;
+};
+
+struct Buffer {
+  Allocation allocation;  // freed after the buffer
+  vk::raii::Buffer buffer{nullptr};
+  std::uint64_t bytes = 0;
+  [[nodiscard]] std::byte* mapped() const { return allocation.mapped(); }
+};
+
+struct Image {
+  Allocation allocation;
+  vk::raii::Image image{nullptr};
+  vk::raii::ImageView view{nullptr};
+  vk::Format format{};
+  vk::Extent2D extent;
+  std::uint32_t mip_levels = 1;
+  vk::ImageAspectFlags aspect;
+  Use last_use = Use::none;  ///< kept by Barriers
+};
+
+struct ImageOptions {
+  vk::Format format{};
+  vk::Extent2D extent;
+  std::uint32_t mip_levels = 1;
+  vk::SampleCountFlagBits samples = vk::SampleCountFlagBits::e1;
+  vk::ImageUsageFlags usage;
+};
+
+/// Throws vk::OutOfDeviceMemoryError and the like; the room's border turns them into errors.
+class Memory {
+ public:
+  explicit Memory(const Device& device);
+  ~Memory();
+  Memory(const Memory&) = delete;
+  Memory& operator=(const Memory&) = delete;
+
+  [[nodiscard]] Buffer buffer(std::uint64_t bytes, vk::BufferUsageFlags usage, MemoryUse use);
+  [[nodiscard]] Image image(const ImageOptions& options);
+  /// Bytes of all blocks taken from the driver.
+  [[nodiscard]] std::uint64_t block_bytes() const;
+
+ private:
+  Allocation allocate(const vk::MemoryRequirements& needs, MemoryUse use, bool image);
+
+  const Device& device_;
+  std::list<Allocation::Block> blocks_;
+};
+
+}  // namespace scenegen::render::vkr

@@ -1,0 +1,57 @@
+// Render passes, pipeline layouts and pipelines; pipelines are made when first needed.
+#pragma once
+
+#include <compare>
+#include <map>
+#include <vulkan/vulkan_raii.hpp>
+
+#include "render/draw_scene.h"
+#include "render/vk/device.h"
+
+namespace scenegen::render::vkr {
+
+constexpr vk::Format kColorFormat = vk::Format::eR8G8B8A8Srgb;
+constexpr vk::Format kIdFormat = vk::Format::eR32Uint;
+constexpr vk::Format kDepthFormat = vk::Format::eD32Sfloat;
+
+enum class PassKind : std::uint8_t { color, ids, shadow };
+
+struct PipelineKey {
+  PassKind pass = PassKind::color;
+  AlphaMode alpha = AlphaMode::opaque;
+  PrimitiveKind kind = PrimitiveKind::triangles;
+  bool textured = false;
+  friend auto operator<=>(const PipelineKey&, const PipelineKey&) = default;
+};
+
+/// Layouts are in attachment layout before and after every pass: transitions are the barrier helper's
+/// business. VkRenderPass rather than dynamic rendering: the validation layer's synchronization checks cover
+/// it.
+class Pipelines {
+ public:
+  Pipelines(const Device& device, vk::SampleCountFlagBits color_samples);
+
+  [[nodiscard]] vk::RenderPass render_pass(PassKind pass) const;
+  [[nodiscard]] vk::PipelineLayout layout() const { return *layout_; }
+  [[nodiscard]] vk::DescriptorSetLayout frame_set_layout() const { return *frame_set_layout_; }
+  [[nodiscard]] vk::DescriptorSetLayout texture_set_layout() const { return *texture_set_layout_; }
+  [[nodiscard]] vk::Pipeline get(const PipelineKey& key);
+  [[nodiscard]] vk::Pipeline sky() const { return *sky_; }
+
+ private:
+  [[nodiscard]] vk::raii::Pipeline make(const PipelineKey& key) const;
+  [[nodiscard]] vk::raii::Pipeline make_sky() const;
+
+  const Device& device_;
+  vk::SampleCountFlagBits color_samples_;
+  vk::raii::DescriptorSetLayout frame_set_layout_{nullptr};
+  vk::raii::DescriptorSetLayout texture_set_layout_{nullptr};
+  vk::raii::PipelineLayout layout_{nullptr};
+  vk::raii::RenderPass color_pass_{nullptr}, ids_pass_{nullptr}, shadow_pass_{nullptr};
+  vk::raii::ShaderModule color_vert_{nullptr}, color_frag_{nullptr}, depth_vert_{nullptr}, ids_frag_{nullptr},
+      shadow_frag_{nullptr}, sky_vert_{nullptr}, sky_frag_{nullptr};
+  std::map<PipelineKey, vk::raii::Pipeline> pipelines_;
+  vk::raii::Pipeline sky_{nullptr};
+};
+
+}  // namespace scenegen::render::vkr

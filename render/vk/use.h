@@ -1,0 +1,20 @@
+// Ways in which resources are used, the vocabulary of barriers.
+#pragma once
+
+#include <cstdint>
+
+namespace scenegen::render::vkr {
+
+/// A way in which the device (or the processor) uses a resource.
+enum class Use : std::uint8_t {
+  none,              ///< fresh: contents are discarded
+  transfer_read,     ///< copied or blitted from
+  transfer_write,    ///< copied or blitted to
+  shader_data,       ///< uniform, storage, index and vertex reads of draws
+  sampled,           ///< sampled in fragment shaders
+  color_attachment,  ///< drawn to, blended, resolved to
+  depth_attachment,  ///< tested and written
+  host_read,         ///< read by the processor after the fence
+};
+
+}  // namespace scenegen::render::vkr
