@@ -2,6 +2,7 @@
 #include <array>
 
 #include "render/strategy/strategy.h"
+#include "render/strategy_names.h"
 
 namespace scenegen::render {
 
@@ -21,6 +22,12 @@ const StrategyEntry* find_strategy(std::string_view name) {
   const auto found =
       std::find_if(all.begin(), all.end(), [&](const StrategyEntry& e) { return e.name == name; });
   return found == all.end() ? nullptr : &*found;
+}
+
+std::vector<std::pair<std::string, std::string>> strategy_choices() {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const StrategyEntry& entry : strategies()) out.emplace_back(entry.name, entry.name);
+  return out;
 }
 
 }  // namespace scenegen::render

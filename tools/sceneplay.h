@@ -1,0 +1,13 @@
+// The verbs of sceneplay, each in a file of its own. They return the exit code (docs/CLI.md).
+#pragma once
+
+#include <span>
+#include <string>
+
+namespace scenegen::tools {
+
+int frames_verb(std::span<const std::string> arguments);
+/// Prints the Vulkan devices there are.
+int list_devices_verb();
+
+}  // namespace scenegen::tools

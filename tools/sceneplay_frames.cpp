@@ -1,0 +1,411 @@
+// sceneplay frames FILE -o DIR: plays a file and writes one picture a frame.
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <deque>
+#include <filesystem>
+#include <fstream>
+#include <future>
+#include <optional>
+#include <thread>
+
+#include "render/camera_path.h"
+#include "render/image_file.h"
+#include "render/renderer.h"
+#include "render/strategy_names.h"
+#include "scene/gltf/read.h"
+#include "scene/limits.h"
+#include "timeline/player.h"
+#include "tools/frame_times.h"
+#include "tools/output.h"
+#include "tools/sceneplay.h"
+
+namespace scenegen::tools {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+struct FramesRequest {
+  std::string file, folder, times, camera, camera_path, report;
+  double fps = 25;
+  double length_s = 0;
+  glm::uvec2 size{1280, 720};
+  render::PictureFormat format = render::PictureFormat::png;
+  std::uint32_t samples = 4;
+  bool ids = false, depth = false;
+  bool shadows = true;
+  std::string strategy = "inline";
+  bool full_barriers = false;
+  std::string device;
+  bool list_devices = false;
+  bool validation = false;
+  bool quiet = false;
+};
+
+/// Where each frame is seen from.
+class CameraMan {
+ public:
+  [[nodiscard]] static Result<CameraMan> make(const FramesRequest& request, const Scene& scene);
+  [[nodiscard]] render::View view(const timeline::Player& player) const {
+    if (path_) return path_->view(player.time_s(), aspect_);
+    if (camera_) return render::view_of_camera(*camera_, player.world_from_camera(id_), aspect_);
+    return framed_;
+  }
+
+ private:
+  float aspect_ = 1.0F;
+  std::optional<render::CameraPath> path_;
+  std::optional<Camera> camera_;
+  CameraId id_;
+  render::View framed_;
+};
+
+Result<std::string> read_text(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  constexpr std::size_t kMost = std::size_t{64} << 20;
+  std::string out;
+  std::array<char, 65536> piece;
+  while (in && out.size() <= kMost) {
+    in.read(piece.data(), piece.size());
+    out.append(piece.data(), static_cast<std::size_t>(in.gcount()));
+  }
+  if (!in.eof() || out.size() > kMost)
+    return fail(ErrorKind::io, path, "cannot be read (or is above 64 MiB)");
+  return out;
+}
+
+Result<CameraId> find_camera(const Scene& scene, const std::string& wanted) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+    if (scene.cameras[i].name == wanted || std::to_string(i) == wanted) return CameraId(i);
+    names.push_back(scene.cameras[i].name);
+  }
+  if (scene.cameras.empty())
+    return fail(ErrorKind::usage, "--camera", "the file has no camera; 'auto' frames the scene");
+  return fail(ErrorKind::usage, "--camera", unknown_word("camera", wanted, names));
+}
+
+Result<CameraMan> CameraMan::make(const FramesRequest& request, const Scene& scene) {
+  CameraMan man;
+  man.aspect_ = static_cast<float>(request.size.x) / static_cast<float>(request.size.y);
+  if (!request.camera_path.empty()) {
+    auto text = read_text(request.camera_path);
+    if (!text) return forward_error(text);
+    auto path = render::parse_camera_path(*text, request.camera_path);
+    if (!path) return forward_error(path);
+    man.path_ = std::move(*path);
+  } else if (request.camera != "auto" && (!request.camera.empty() || !scene.cameras.empty())) {
+    auto id = request.camera.empty() ? Result<CameraId>(CameraId(0)) : find_camera(scene, request.camera);
+    if (!id) return forward_error(id);
+    man.id_ = *id;
+    man.camera_ = scene.cameras[id->value];
+  } else {
+    man.framed_ = render::frame_boxes(object_bounds(scene), man.aspect_);
+  }
+  return man;
+}
+
+Result<std::vector<double>> moments(const FramesRequest& request, const Options& options, double duration_s) {
+  if (options.given("--times")) {
+    auto times = parse_times(request.times, duration_s);
+    if (!times) times.error().where = "--times";
+    return times;
+  }
+  if (options.given("--fps") || options.given("--duration")) {
+    auto times =
+        film_times(request.fps, options.given("--duration") ? request.length_s : duration_s, duration_s);
+    if (!times) times.error().where = "--fps";
+    return times;
+  }
+  return parse_times(duration_s > 0.0 ? "25%,50%,75%,100%" : "0", duration_s);
+}
+
+Result<void> make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder, error))
+    return fail(ErrorKind::io, folder, error ? "cannot be made: " + error.message() : "is no folder");
+  return check_output_file((std::filesystem::path(folder) / "frame_00000.png").string());
+}
+
+/// Encodes and writes the files of one frame; runs on a thread of its own.
+struct Encoded {
+  double encode_ms = 0;
+  std::uint64_t bytes = 0;
+};
+Result<Encoded> write_frame(const FramesRequest& request, std::size_t number,
+                            const render::FrameResult& frame, const render::View& view) {
+  const Stopwatch watch;
+  std::string digits = std::to_string(number);
+  digits.insert(0, digits.size() < 5 ? 5 - digits.size() : 0, '0');
+  Encoded out;
+  const auto write = [&](const std::string& name, const std::string& bytes) {
+    out.bytes += bytes.size();
+    return write_file((std::filesystem::path(request.folder) / name).string(), bytes);
+  };
+  Result<void> written = write("frame_" + digits + "." + std::string(extension(request.format)),
+                               render::encode_picture(request.format, request.size, frame.rgba));
+  if (written && request.ids)
+    written = write("ids_" + digits + ".png", render::encode_ids(request.size, frame.ids));
+  if (written && request.depth) {
+    std::vector<float> metres(frame.depth.size());
+    std::transform(frame.depth.begin(), frame.depth.end(), metres.begin(), [&](float d) {
+      return d > 0.0F ? view.distance_m(d) : std::numeric_limits<float>::infinity();
+    });
+    written = write("depth_" + digits + ".pfm", render::encode_pfm(request.size, metres));
+  }
+  if (!written) return forward_error(written);
+  out.encode_ms = watch.seconds() * 1e3;
+  return out;
+}
+
+ordered_json frame_json(const render::FrameReport& r, double seek_ms, double encode_ms) {
+  return {{"timeS", r.time_s},
+          {"objects", r.objects},
+          {"changed", r.changed},
+          {"visible", r.visible},
+          {"tested", r.tested},
+          {"drawn", r.drawn},
+          {"draws", r.draws},
+          {"triangles", r.triangles},
+          {"uploadedBytes", r.uploaded_bytes},
+          {"stagesMs",
+           {{"seek", seek_ms},
+            {"update", r.update_ms},
+            {"cull", r.plan_ms},
+            {"record", r.record_ms},
+            {"submit", r.submit_ms},
+            {"wait", r.wait_ms},
+            {"gpu", r.gpu_ms < 0 ? ordered_json() : ordered_json(r.gpu_ms)},
+            {"readback", r.readback_ms},
+            {"encode", encode_ms}}}};
+}
+
+/// Plays the times through the renderer: while the device draws a frame, the one before is encoded.
+class Filming {
+ public:
+  Filming(const FramesRequest& request, timeline::Player player, CameraMan camera, render::Renderer renderer)
+      : request_(request),
+        player_(std::move(player)),
+        camera_(std::move(camera)),
+        renderer_(std::move(renderer)) {}
+
+  Result<void> run(const std::vector<double>& times) {
+    Progress progress("frames", times.size(), request_.quiet);
+    for (const double time_s : times) {
+      if (renderer_.in_flight() == render::Renderer::most_in_flight()) {
+        if (Result<void> done = finish_one(progress); !done) return done;
+      }
+      const Stopwatch watch;
+      const timeline::ChangeSet& changes = player_.seek(time_s);
+      seek_ms_.push_back(watch.seconds() * 1e3);
+      views_.push_back(camera_.view(player_));
+      if (Result<void> done = renderer_.submit(changes, player_, views_.back()); !done) return done;
+    }
+    while (renderer_.in_flight() > 0) {
+      if (Result<void> done = finish_one(progress); !done) return done;
+    }
+    while (!encoding_.empty()) {
+      if (Result<void> done = take_encoded(progress); !done) return done;
+    }
+    return {};
+  }
+
+  [[nodiscard]] ordered_json frames() const { return frames_; }
+  [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+  [[nodiscard]] render::Renderer& renderer() { return renderer_; }
+
+ private:
+  struct Job {
+    render::FrameReport report;
+    double seek_ms;
+    std::future<Result<Encoded>> encoded;
+  };
+
+  Result<void> finish_one(Progress& progress) {
+    render::FrameResult frame;
+    if (Result<void> done = renderer_.finish(frame); !done) return done;
+    const std::size_t most = std::max(1U, std::thread::hardware_concurrency());
+    while (encoding_.size() >= most) {
+      if (Result<void> done = take_encoded(progress); !done) return done;
+    }
+    const std::size_t number = finished_++;
+    const render::FrameReport report = frame.report;
+    encoding_.push_back(
+        {report, seek_ms_[number],
+         std::async(std::launch::async, [this, number, frame = std::move(frame), view = views_[number]] {
+           return write_frame(request_, number, frame, view);
+         })});
+    return {};
+  }
+
+  Result<void> take_encoded(Progress& progress) {
+    Job job = std::move(encoding_.front());
+    encoding_.pop_front();
+    Result<Encoded> encoded = job.encoded.get();
+    if (!encoded) return forward_error(encoded);
+    bytes_ += encoded->bytes;
+    frames_.push_back(frame_json(job.report, job.seek_ms, encoded->encode_ms));
+    progress.advance();
+    return {};
+  }
+
+  const FramesRequest& request_;
+  timeline::Player player_;
+  CameraMan camera_;
+  render::Renderer renderer_;
+  std::vector<render::View> views_;
+  std::vector<double> seek_ms_;
+  std::deque<Job> encoding_;
+  std::size_t finished_ = 0;
+  std::uint64_t bytes_ = 0;
+  ordered_json frames_ = ordered_json::array();
+};
+
+ordered_json report_json(const FramesRequest& request, Filming& filming, double load_s, double total_s) {
+  const render::DeviceInfo& device = filming.renderer().device();
+  return {{"schema", "sceneplay/frames"},
+          {"version", 1},
+          {"file", request.file},
+          {"device", {{"name", device.name}, {"type", device.type}, {"driver", device.driver}}},
+          {"size", {request.size.x, request.size.y}},
+          {"samples", request.samples},
+          {"strategy", request.strategy},
+          {"shadows", request.shadows},
+          {"loadS", load_s},
+          {"totalS", total_s},
+          {"deviceBytes", filming.renderer().device_bytes()},
+          {"warnings", filming.renderer().warnings()},
+          {"frames", filming.frames()}};
+}
+
+render::RendererOptions renderer_options(const FramesRequest& request) {
+  render::RendererOptions o;
+  o.device.wanted = request.device;
+  o.device.validation = request.validation;
+  o.size = request.size;
+  o.samples = request.samples;
+  o.outputs = {true, request.ids, request.depth};
+  o.strategy = request.strategy;
+  o.shadows = request.shadows;
+  o.full_barriers = request.full_barriers;
+  return o;
+}
+
+Result<void> draw(const FramesRequest& request, const Options& options) {
+  const Stopwatch watch;
+  auto read = gltf::read(request.file, {});
+  if (!read) return forward_error(read);
+  const Scene& scene = read->scene;
+  auto times = moments(request, options, static_cast<double>(scene.duration_s));
+  if (!times) return forward_error(times);
+  auto camera = CameraMan::make(request, scene);
+  if (!camera) return forward_error(camera);
+  if (auto made = make_folder(request.folder); !made) return made;
+  timeline::Player player(timeline::compile(scene));
+  auto renderer = render::Renderer::create(scene, player, renderer_options(request));
+  if (!renderer) return forward_error(renderer);
+  if (!request.quiet) {
+    for (const std::string& warning : renderer->warnings())
+      std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  }
+  const std::uint64_t objects = scene.objects.size();
+  *read = {};  // the renderer and the player hold what they need
+  const double load_s = watch.seconds();
+  Filming filming(request, std::move(player), std::move(*camera), std::move(*renderer));
+  if (auto done = filming.run(*times); !done) return done;
+  const std::vector<std::string> messages = filming.renderer().take_validation_messages();
+  if (!messages.empty())
+    return fail(ErrorKind::no_device, "validation",
+                std::to_string(messages.size()) + " messages, the first: " + messages.front());
+  if (!request.report.empty()) {
+    const auto json = report_json(request, filming, load_s, watch.seconds());
+    if (auto written = write_file(request.report, pretty(json)); !written) return written;
+  }
+  if (request.quiet) return {};
+  return write_stdout(request.folder + "  " + human_count(times->size()) +
+                      (times->size() == 1 ? " frame  " : " frames  ") + std::to_string(request.size.x) + "x" +
+                      std::to_string(request.size.y) + "  " + human_bytes(filming.bytes()) + "  " +
+                      human_count(objects) + " objects  " + filming.renderer().device().name + "  " +
+                      human_seconds(watch.seconds()) + "\n");
+}
+
+void add_options(Options& options, FramesRequest& r) {
+  options.positional("FILE", r.file, "a .glb or .gltf file");
+  options.group("Output");
+  options.add("-o,--output", text_value(r.folder, "DIR"),
+              "folder for frame_00000.png and so on; made when missing");
+  options.add("--size", size2_value(r.size, {1, 1}, {limits::kMaxFrameSide, limits::kMaxFrameSide}, "WxH"),
+              "size of the pictures in pixels");
+  options.add("--format",
+              choice_value<render::PictureFormat>(r.format, {{"png", render::PictureFormat::png},
+                                                             {"jpg", render::PictureFormat::jpg},
+                                                             {"bmp", render::PictureFormat::bmp}}),
+              "form of the pictures");
+  options.flag("--ids", r.ids,
+               "also ids_00000.png: RGBA, object index = R + 2^8 G + 2^16 B + 2^24 A; all ones: background");
+  options.flag("--depth", r.depth, "also depth_00000.pfm: metres along the view direction; inf: background");
+  options.add("--report", text_value(r.report, "FILE"), "counts and stage times of every frame as JSON");
+  options.group("Time");
+  options.add("--times",
+              text_value(r.times, "LIST", "seconds, percentages, FROM:TO:STEP; separated by commas"),
+              "moments to draw", Role::run, "25%,50%,75%,100%");
+  options.add("--fps", real_value(r.fps, 0.001, 10000, "N"), "film: pictures a second");
+  options.add("--duration", real_value(r.length_s, 0.001, 1e6, "S"),
+              "film: seconds that the whole timeline takes", Role::run, "the timeline's own length");
+  options.group("View");
+  options.add("--camera",
+              text_value(r.camera, "NAME|INDEX", "a camera of the file, or auto: frame the whole scene"),
+              "camera", Role::run, "the file's first, else auto");
+  options.add("--camera-path", text_value(r.camera_path, "FILE"),
+              "camera path as JSON (docs/CAMERA_PATH.md)");
+  options.group("Drawing");
+  options.add("--samples", choice_value<std::uint32_t>(r.samples, {{"1", 1}, {"4", 4}}, "N"),
+              "samples a pixel");
+  options.add("--shadows", on_off_value(r.shadows), "shadows of the sun");
+  options.add("--strategy", choice_value<std::string>(r.strategy, render::strategy_choices()),
+              "way of drawing");
+  options.add("--barriers", choice_value<bool>(r.full_barriers, {{"exact", false}, {"full", true}}),
+              "full: a full barrier at every step, to look for missing ones");
+  options.group("Device");
+  options.add("--device", text_value(r.device, "NAME|INDEX"), "Vulkan device", Role::run,
+              "a discrete GPU, else any");
+  options.flag("--list-devices", r.list_devices,
+               "print the Vulkan devices there are");  // handled before parsing
+  options.add("--validation", on_off_value(r.validation), "check every Vulkan call with the Khronos layer");
+  options.group("General");
+  options.add_general(r.quiet);
+}
+
+}  // namespace
+
+int frames_verb(std::span<const std::string> arguments) {
+  if (std::find(arguments.begin(), arguments.end(), "--list-devices") != arguments.end())
+    return list_devices_verb();
+  FramesRequest request;
+  if (const char* wanted = std::getenv("SCENEPLAY_VALIDATION");
+      wanted != nullptr && std::string_view(wanted) == "1")
+    request.validation = true;
+  Options options("sceneplay frames", {"sceneplay frames FILE -o DIR [options]"},
+                  "plays a file and writes one picture a frame.");
+  add_options(options, request);
+  const Result<Action> action = options.parse(arguments);
+  if (!action) return report_error(action.error());
+  if (*action != Action::run) {
+    const auto written =
+        write_stdout(*action == Action::help ? options.help(colored(1)) : "sceneplay " SCENEGEN_VERSION "\n");
+    return written ? 0 : report_error(written.error());
+  }
+  if (request.folder.empty())
+    return report_error({ErrorKind::usage, "--output", "missing (usage: sceneplay frames FILE -o DIR)"});
+  if (options.given("--times") && (options.given("--fps") || options.given("--duration")))
+    return report_error({ErrorKind::usage, "--times", "has no place beside --fps and --duration"});
+  if (options.given("--camera") && options.given("--camera-path"))
+    return report_error({ErrorKind::usage, "--camera", "has no place beside --camera-path"});
+  const Result<void> drawn = draw(request, options);
+  return drawn ? 0 : report_error(drawn.error());
+}
+
+}  // namespace scenegen::tools
