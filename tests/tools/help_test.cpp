@@ -57,6 +57,29 @@ TEST_CASE("help fits a terminal and is in docs/CLI.md as it stands") {
   }
 }
 
+#ifdef SCENEPLAY_PROGRAM
+TEST_CASE("every option of sceneplay is in docs/CLI.md") {
+  const std::string reference = read_file(SCENEGEN_SOURCE_DIR "/docs/CLI.md");
+  for (const char* verb : {"frames"}) {
+    const ProcessResult result = run(SCENEPLAY_PROGRAM, {verb, "--help"});
+    REQUIRE(result.code == 0);
+    std::size_t options = 0;
+    for (const std::string& line : lines(result.out)) {
+      INFO(line);
+      CHECK(line.size() <= 100);
+      const std::size_t dashes = line.find("--");
+      if (!line.starts_with("  -") || dashes == std::string::npos) continue;
+      ++options;
+      const std::string name = line.substr(dashes, line.find_first_of(" ,", dashes) - dashes);
+      CHECK_THAT(reference, Catch::Matchers::Contains("\n$ sceneplay " + std::string(verb) + " --help\n"));
+      CHECK_THAT(reference.substr(reference.find("$ sceneplay " + std::string(verb))),
+                 Catch::Matchers::Contains(name + " ") || Catch::Matchers::Contains(name + "\n"));
+    }
+    CHECK(options > 5);
+  }
+}
+#endif
+
 TEST_CASE("help and version win over the rest of the line") {
   CHECK(run(SCENEGEN_PROGRAM, words("--coherence 7 --help")).code == 0);
   CHECK(run(SCENEGEN_PROGRAM, words("inspect --help")).code == 0);
