@@ -362,12 +362,18 @@ void ObjectBuilder::add_names() {
     }
     const NameTable table = decode_names(document_.names[shown], data_, at);
     scene_.objects.names.reserve(count, table.byte_count());
-    for (std::size_t i = 0; i < count; ++i) names.add(table[i]);
+    names.add_all(count, [&](std::size_t i) { return table[i]; });
     return;
   }
   std::size_t bytes = 0;
   for (const std::uint32_t node : origins_.node) bytes += document_.nodes[node].name.size();
-  if (origins_.instance.empty()) scene_.objects.names.reserve(count, bytes);
+  bool all_named = origins_.instance.empty();
+  for (std::size_t i = 0; i < count && all_named; ++i)
+    all_named = !document_.nodes[origins_.node[i]].name.empty();
+  if (all_named) {
+    scene_.objects.names.reserve(count, bytes);
+    return names.add_all(count, [&](std::size_t i) { return document_.nodes[origins_.node[i]].name; });
+  }
   std::string made;
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t node = origins_.node[i];

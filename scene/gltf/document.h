@@ -1,9 +1,10 @@
 // A glTF document in flat arrays, indices still unchecked: what one pass over the JSON leaves, whatever the
-// order of its members. Strings are views into the text or into the parser's buffer. Private to scene/gltf.
+// order of its members. Strings are views into the text or into Document::unescaped. Private to scene/gltf.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <string>
 #include <string_view>
@@ -139,6 +140,7 @@ struct Document {
   std::vector<Channel> channels;
   bool animated = false;  ///< animations[0] is there
   IgnoredList ignored;
+  std::deque<std::string> unescaped;  ///< strings that hold escapes in the text
 };
 
 /// The quaternion x y z w at unit length; within float32 of it the numbers stay as they are, so that our own

@@ -19,7 +19,7 @@ using Value = simdjson::ondemand::value;
 [[noreturn]] void reject_json(const Place& at, simdjson::error_code code, std::string_view wanted);
 
 /// A string of the document. A view into the text where it holds no escape, else into the parser's own
-/// buffer: both live as long as the document that is being read.
+/// buffer, which dies with the parser.
 [[nodiscard]] std::string_view get_string(Value& value, const Place& at);
 [[nodiscard]] bool get_bool(Value& value, const Place& at);
 /// Integer in [0, 2^63); `most` is named in the error.

@@ -9,9 +9,7 @@
 
 namespace scenegen::gltf::reading {
 
-namespace {
-
-std::uint64_t hash_of(std::string_view text) {
+std::uint64_t UniqueNames::hash_of(std::string_view text) {
   std::uint64_t hash = text.size();
   while (text.size() >= 8) {
     std::uint64_t word = 0;
@@ -25,13 +23,10 @@ std::uint64_t hash_of(std::string_view text) {
   return mix64(hash ^ rest);
 }
 
-}  // namespace
-
 UniqueNames::UniqueNames(NameTable& names, std::size_t count)
     : names_(names), slots_(std::bit_ceil(std::max<std::size_t>(16, count * 2))) {}
 
-bool UniqueNames::insert(std::string_view name) {
-  const std::uint64_t hash = hash_of(name);
+bool UniqueNames::insert(std::string_view name, std::uint64_t hash) {
   const std::uint64_t tag = hash & 0xFFFFFFFF00000000ULL;
   const std::size_t mask = slots_.size() - 1;
   for (std::size_t i = hash & mask;; i = (i + 1) & mask) {
@@ -45,12 +40,14 @@ bool UniqueNames::insert(std::string_view name) {
   }
 }
 
-void UniqueNames::add(std::string_view wanted) {
-  if (insert(wanted)) return;
+void UniqueNames::add(std::string_view wanted, std::uint64_t hash) {
+  if (insert(wanted, hash)) return;
   const std::string base(wanted);
   std::uint32_t& suffix = next_suffix_.emplace(base, 2).first->second;
-  while (!insert(base + "_" + std::to_string(suffix))) ++suffix;
-  ++suffix;
+  for (;;) {
+    const std::string name = base + "_" + std::to_string(suffix++);
+    if (insert(name, hash_of(name))) return;
+  }
 }
 
 namespace {

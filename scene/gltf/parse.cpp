@@ -81,17 +81,36 @@ void check_extensions(const Place& root, Document& out) {
   }
 }
 
+/// Strings with escapes lie in the parser's buffer: moves them to the document.
+void keep_unescaped(std::string_view text, Document& out) {
+  const auto keep = [&](std::string_view& view) {
+    const bool inside = view.data() >= text.data() && view.data() <= text.data() + text.size();
+    if (!inside && !view.empty()) view = out.unescaped.emplace_back(view);
+  };
+  for (Node& node : out.nodes) keep(node.name);
+  for (MeshRecord& mesh : out.meshes) keep(mesh.name);
+  for (Buffer& buffer : out.buffers) keep(buffer.uri);
+  for (ImageRecord& image : out.images) {
+    keep(image.name);
+    keep(image.uri);
+    keep(image.mime_type);
+  }
+  out.extensions_used.clear();  // done with
+  out.extensions_required.clear();
+}
+
 }  // namespace
 
 void ignore_extension(std::string_view name, const Place& at, Document& out) {
   out.ignored.add(at, printable(name));
 }
 
-void parse_document(std::string_view text, simdjson::ondemand::parser& parser, Document& out) {
+void parse_document(std::string_view text, Document& out) {
   const Place root;
   if (text.size() > limits::kMaxJsonBytes - simdjson::SIMDJSON_PADDING) {
     reject(root, "JSON of " + std::to_string(text.size()) + " bytes is more than 4 GiB");
   }
+  simdjson::ondemand::parser parser;  // dies here: for 330 MB of nodes its index has 250 MB
   simdjson::ondemand::document document;
   const simdjson::padded_string_view padded(text.data(), text.size(),
                                             text.size() + simdjson::SIMDJSON_PADDING);
@@ -119,6 +138,7 @@ void parse_document(std::string_view text, simdjson::ondemand::parser& parser, D
   if (!has_asset)
     reject(root.key("asset"), "missing; a glTF 2.0 file says \"asset\": {\"version\": \"2.0\"}");
   check_extensions(root, out);
+  keep_unescaped(text, out);
 }
 
 }  // namespace scenegen::gltf::reading

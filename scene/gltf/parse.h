@@ -8,9 +8,8 @@
 
 namespace scenegen::gltf::reading {
 
-/// `text` has simdjson::SIMDJSON_PADDING readable bytes behind it. Views in `out` point into `text` and into
-/// `parser`.
-void parse_document(std::string_view text, simdjson::ondemand::parser& parser, Document& out);
+/// `text` has simdjson::SIMDJSON_PADDING readable bytes behind it and outlives `out`.
+void parse_document(std::string_view text, Document& out);
 
 // One function a member of the root, each given the member's value.
 void parse_asset(Value value, const Place& at, Document& out);

@@ -29,9 +29,8 @@ ReadResult read_block(const Block& file, const std::string& name, const std::str
                       const ReadOptions& options) {
   ReadResult out;
   const Container container = split_container(file.bytes());
-  simdjson::ondemand::parser parser;  // holds the strings with escapes that `document` points to
   Document document;
-  parse_document(container.json, parser, document);
+  parse_document(container.json, document);
   Buffers buffers;
   buffers.load(document, container, folder);
   const std::uint64_t input_bytes = file.size + buffers.external_bytes();
