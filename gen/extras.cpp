@@ -73,11 +73,11 @@ void ExtraPlacer::place(std::uint64_t building, std::uint32_t storey, std::vecto
     std::swap(order_[k], order_[k + random_.below(first + 4 * k, slots.size() - k)]);
   const glm::dvec3 size = size_m_ * scale_;
   for (std::size_t k = 0; k < count_; ++k) {
-    const std::size_t in_layer = k % slots.size();
+    const std::size_t in_layer = k % slots.size(), layer = k / slots.size();
     const Slot& slot = slots[order_[in_layer]];
     // A pile stands straight: its objects share the offset of the lowest.
     const glm::dvec2 askew(random_.unit(first + 4 * in_layer + 1), random_.unit(first + 4 * in_layer + 2));
-    const double z = slot.lo_m.z + static_cast<double>(k / slots.size()) * size.z;
+    const double z = slot.lo_m.z + static_cast<double>(layer) * size.z;
     out.push_back({{slot.lo_m.x + slot.slack_m.x * askew.x + 0.5 * size.x,
                     slot.lo_m.y + slot.slack_m.y * askew.y + 0.5 * size.y, z}});
   }

@@ -64,7 +64,8 @@ Result<void> lay_out(const TownOptions& o, TownRecipe& recipe) {
     if (build_building(plan, most_parts, recipe.layouts.emplace_back())) continue;
     std::string what = "more than " + std::to_string(limits::kMaxObjects) + " objects";
     if (buildings == 1)
-      return fail(ErrorKind::usage, "--building-size", what + "; take fewer or larger bricks, or fewer floors");
+      return fail(ErrorKind::usage, "--building-size",
+                  what + "; take fewer or larger bricks, or fewer floors");
     what += ": a building has more than " + std::to_string(most_parts);
     return fail(ErrorKind::usage, "--grid", what + "; take fewer buildings");
   }

@@ -17,7 +17,7 @@ struct Paint {
 
 const Paint& paint_of(Look look) {
   // Bricks multiply the texture's colour: three firings of one clay.
-  static const std::array<Paint, kLooks> kPaints{{
+  static const std::array<Paint, kLooks> paints{{
       {"brick_red", {0.66F, 0.42F, 0.36F, 1.0F}, 0.9F},
       {"brick_dark", {0.40F, 0.27F, 0.25F, 1.0F}, 0.9F},
       {"brick_pale", {0.82F, 0.68F, 0.52F, 1.0F}, 0.9F},
@@ -34,7 +34,7 @@ const Paint& paint_of(Look look) {
       {"grass", {0.10F, 0.20F, 0.045F, 1.0F}, 1.0F},
       {"cargo", {0.62F, 0.36F, 0.12F, 1.0F}, 0.8F},
   }};
-  return kPaints[static_cast<std::size_t>(look)];
+  return paints[static_cast<std::size_t>(look)];
 }
 
 bool is_brick(Look look) {

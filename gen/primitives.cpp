@@ -11,7 +11,7 @@ struct Face {
 };
 
 const std::array<Face, 6>& faces() {
-  static const std::array<Face, 6> kFaces{{
+  static const std::array<Face, 6> all{{
       {{1, 0, 0}, {0, 0, -1}, kEnd},
       {{-1, 0, 0}, {0, 0, 1}, kEnd},
       {{0, 1, 0}, {1, 0, 0}, kBed},
@@ -19,7 +19,7 @@ const std::array<Face, 6>& faces() {
       {{0, 0, 1}, {1, 0, 0}, kLongSide},
       {{0, 0, -1}, {-1, 0, 0}, kLongSide},
   }};
-  return kFaces;
+  return all;
 }
 
 /// Corner k of a face, counter-clockwise from the lower left one as seen from outside.

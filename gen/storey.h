@@ -10,7 +10,8 @@
 
 namespace scenegen::gen {
 
-enum Side : std::size_t { kFront, kBack, kLeft, kRight };  ///< y = 0, y = length, x = 0, x = width
+/// Walls of a ring: y = 0, y = length, x = 0, x = width.
+constexpr std::size_t kFront = 0, kBack = 1, kLeft = 2, kRight = 3;
 
 /// Outer rectangle of a ring of walls, and its courses.
 struct Ring {

@@ -97,9 +97,10 @@ Generated spheres(const SphereSet& shape, std::uint64_t seed) {
   Palette palette(out.scene, uv_sphere(shape.slices, shape.stacks), {500, 250, 200});
   const Random random(seed, "spheres");
   for (std::uint32_t i = 0; i < kSphereCount; ++i) {
+    const std::uint32_t column = i % 16, row = i / 16;
     Transform t;
     t.scale = glm::vec3(0.6F + 0.35F * random.unit(2ULL * i));
-    t.translation_m = {static_cast<float>(i % 16), 0.5F * t.scale.y, static_cast<float>(i / 16)};
+    t.translation_m = {static_cast<float>(column), 0.5F * t.scale.y, static_cast<float>(row)};
     add_numbered(out.scene, "sphere", i, palette.box(kBoxLooks[random.below(2ULL * i + 1, kBoxLooks.size())]),
                  t);
   }
@@ -153,9 +154,10 @@ Generated textured_boxes(std::uint32_t count, std::uint64_t seed) {
   const Random random(seed, "textured boxes");
   for (std::uint32_t i = 0; i < count; ++i) {
     constexpr std::array<Look, 3> kBricks{Look::brick_red, Look::brick_dark, Look::brick_pale};
+    const std::uint32_t column = i % columns, row = i / columns;
     Transform t;
     t.scale = {0.9F, 0.6F, 0.45F};
-    t.translation_m = {static_cast<float>(i % columns), 0.7F * static_cast<float>(i / columns),
+    t.translation_m = {static_cast<float>(column), 0.7F * static_cast<float>(row),
                        0.25F * random.unit(2ULL * i)};
     add_numbered(out.scene, "box", i, palette.box(kBricks[random.below(2ULL * i + 1, kBricks.size())]), t);
   }

@@ -31,7 +31,7 @@ Image png(const char* name, const std::vector<std::uint8_t>& rgb, int width, int
 }
 
 std::uint8_t byte_of(double v) {
-  return static_cast<std::uint8_t>(std::clamp(static_cast<int>(v + 0.5), 0, 255));
+  return static_cast<std::uint8_t>(std::clamp(std::lround(v), 0L, 255L));
 }
 
 /// Value noise in [0, 1] with `cells` lattice cells over `size` pixels, repeating.

@@ -175,10 +175,10 @@ TEST_CASE("outer walls have no gaps: what a plane through the glass cuts fills t
         if (cuts(0, plan.size_mm.x - 1 - plane)) area[kRight] += std::int64_t{size.y} * size.z;
       }
       // Nothing overlaps (above), so equal areas mean no gap.
-      for (const Side side : {kFront, kBack}) {
+      for (const std::size_t side : {kFront, kBack}) {
         CHECK(area[side] == std::int64_t{plan.size_mm.x} * plan.wall_height_mm());
       }
-      for (const Side side : {kLeft, kRight}) {
+      for (const std::size_t side : {kLeft, kRight}) {
         CHECK(area[side] == std::int64_t{plan.size_mm.y} * plan.wall_height_mm());
       }
     }
