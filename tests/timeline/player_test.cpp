@@ -1,44 +1,14 @@
 #include "timeline/player.h"
 
 #include <algorithm>
-#include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <limits>
-#include <new>
 
+#include "counting_allocator.h"
 #include "naive_player.h"
 #include "random_scene.h"
-
-namespace {
-std::atomic<std::uint64_t> g_allocations{0};
-}
-
-void* operator new(std::size_t size) {
-  ++g_allocations;
-  if (void* p = std::malloc(size == 0 ? 1 : size)) return p;
-  throw std::bad_alloc();
-}
-void* operator new(std::size_t size, std::align_val_t alignment) {
-  ++g_allocations;
-  const auto a = static_cast<std::size_t>(alignment);
-  if (void* p = std::aligned_alloc(a, (size + a - 1) / a * a)) return p;
-  throw std::bad_alloc();
-}
-void operator delete(void* p, std::align_val_t) noexcept {
-  std::free(p);
-}
-void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
-  std::free(p);
-}
-void operator delete(void* p) noexcept {
-  std::free(p);
-}
-void operator delete(void* p, std::size_t) noexcept {
-  std::free(p);
-}
 
 namespace scenegen::timeline {
 namespace {
@@ -517,12 +487,12 @@ TEST_CASE("nothing is allocated after construction") {
   for (const Scene& scene : {random.make(5000, 300), many_events()}) {
     Player p(compile(scene));
     std::size_t changed = 0;
-    const std::uint64_t before = g_allocations;
+    const std::uint64_t before = test::allocation_count();
     for (int i = 0; i < 500; ++i) {
       changed += p.seek(random_time(random)).count();
       changed += p.advance(static_cast<double>(random.in(-0.5F, 0.5F))).count();
     }
-    REQUIRE(g_allocations == before);
+    REQUIRE(test::allocation_count() == before);
     REQUIRE(changed > 500);
   }
 }
