@@ -18,20 +18,20 @@ struct Paint {
 const Paint& paint_of(Look look) {
   // Bricks multiply the texture's colour: three firings of one clay.
   static const std::array<Paint, kLooks> paints{{
-      {"brick_red", {0.66F, 0.42F, 0.36F, 1.0F}, 0.9F},
-      {"brick_dark", {0.40F, 0.27F, 0.25F, 1.0F}, 0.9F},
-      {"brick_pale", {0.82F, 0.68F, 0.52F, 1.0F}, 0.9F},
+      {"brick_red", {0.72F, 0.47F, 0.40F, 1.0F}, 0.9F},
+      {"brick_dark", {0.46F, 0.31F, 0.28F, 1.0F}, 0.9F},
+      {"brick_pale", {0.92F, 0.77F, 0.60F, 1.0F}, 0.9F},
       {"plaster", {0.62F, 0.58F, 0.51F, 1.0F}, 0.95F},
-      {"stone", {0.44F, 0.40F, 0.34F, 1.0F}, 0.85F},
+      {"stone", {0.55F, 0.50F, 0.42F, 1.0F}, 0.85F},
       {"paint", {0.72F, 0.71F, 0.68F, 1.0F}, 0.5F},
       {"glass", {0.10F, 0.16F, 0.21F, 0.72F}, 0.05F},
       {"door", {0.025F, 0.09F, 0.075F, 1.0F}, 0.4F},
-      {"tile_red", {0.25F, 0.07F, 0.04F, 1.0F}, 0.75F},
-      {"tile_brown", {0.20F, 0.058F, 0.036F, 1.0F}, 0.75F},
-      {"gravel", {0.21F, 0.20F, 0.185F, 1.0F}, 1.0F},
-      {"pavement", {0.30F, 0.285F, 0.26F, 1.0F}, 0.95F},
-      {"street", {0.11F, 0.11F, 0.115F, 1.0F}, 0.95F},
-      {"grass", {0.10F, 0.20F, 0.045F, 1.0F}, 1.0F},
+      {"tile_red", {0.38F, 0.115F, 0.065F, 1.0F}, 0.75F},
+      {"tile_brown", {0.29F, 0.088F, 0.053F, 1.0F}, 0.75F},
+      {"gravel", {0.28F, 0.265F, 0.24F, 1.0F}, 1.0F},
+      {"pavement", {0.40F, 0.375F, 0.335F, 1.0F}, 0.95F},
+      {"street", {0.19F, 0.185F, 0.18F, 1.0F}, 0.95F},
+      {"grass", {0.16F, 0.265F, 0.07F, 1.0F}, 1.0F},
       {"cargo", {0.62F, 0.36F, 0.12F, 1.0F}, 0.8F},
   }};
   return paints[static_cast<std::size_t>(look)];

@@ -81,7 +81,8 @@ BrickImages brick_images(const glm::ivec3& size_mm) {
   const double arris_mm = joint_mm;
   std::vector<double> relief(std::size_t{kAtlasWidth} * kAtlasHeight, 0.0);
   std::vector<std::uint8_t> color(relief.size() * 3, 150), normal(relief.size() * 3);
-  const glm::dvec3 brick(206, 138, 108), mortar(222, 214, 200);
+  // The materials tint all of it red; the mortar is bluish here so that it comes out grey.
+  const glm::dvec3 brick(206, 138, 108), mortar(214, 242, 244);
 
   for (const FacePixels& f : {face_pixels(kLongSide, length, height), face_pixels(kEnd, width, height),
                               face_pixels(kBed, length, width)}) {
