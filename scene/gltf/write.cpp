@@ -80,16 +80,22 @@ std::string in_gb(std::uint64_t bytes) {
   return text;
 }
 
-Result<void> check_glb_size(const std::string& path, std::uint64_t bytes) {
-  if (bytes <= limits::kMaxGlbBytes) return {};
-  return fail(ErrorKind::bad_input, path,
-              in_gb(bytes) + "; a .glb holds at most 4.3 GB: write a .gltf, or use layout instances");
+std::string shown(const std::string& path) {
+  return path == "-" ? "standard output" : path;
 }
 
 Result<void> check_json_size(const std::string& path, std::uint64_t bytes) {
   if (bytes <= limits::kMaxJsonBytes) return {};
-  return fail(ErrorKind::bad_input, path,
+  return fail(ErrorKind::bad_input, shown(path),
               in_gb(bytes) + " of JSON; readers take at most 4.3 GB: use layout instances");
+}
+
+Result<void> check_glb_size(const std::string& path, std::uint64_t json_padded, std::uint64_t buffer) {
+  if (Result<void> json = check_json_size(path, json_padded); !json) return json;
+  const std::uint64_t bytes = glb_bytes(json_padded, buffer);
+  if (bytes <= limits::kMaxGlbBytes) return {};
+  return fail(ErrorKind::bad_input, shown(path),
+              in_gb(bytes) + "; a .glb holds at most 4.3 GB: write a .gltf, or use layout instances");
 }
 
 /// JSON text with the padding of a chunk.
@@ -97,6 +103,14 @@ std::uint64_t count_json(const Document& document) {
   ByteSink counter;
   document.emit_json({}, counter);
   return counter.total() + padding4(counter.total());
+}
+
+/// Whether it is worth counting first, rather than finding out when gigabytes are on the disk.
+bool may_be_too_large(const Document& document) {
+  const WriteReport report = document.report();
+  constexpr std::uint64_t kMostTextEach = 300;  // a node with a long name, a channel, an accessor
+  return document.buffer_bytes() + kMostTextEach * (report.nodes + report.channels + report.accessors) >
+         limits::kMaxGlbBytes / 2;
 }
 
 void put_buffer_chunk(const Document& document, ByteSink& sink) {
@@ -111,12 +125,8 @@ void put_buffer_chunk(const Document& document, ByteSink& sink) {
 Result<std::uint64_t> put_glb(const Document& document, const std::string& path, OutputFile& file) {
   const std::uint64_t buffer = document.buffer_bytes();
   std::uint64_t json_padded = 0;
-  if (file.streams()) {
-    json_padded = count_json(document);
-    if (Result<void> size = check_glb_size(path, glb_bytes(json_padded, buffer)); !size)
-      return forward_error(size);
-  }
-  if (Result<void> size = check_glb_size(path, glb_bytes(0, buffer)); !size) return forward_error(size);
+  if (file.streams() || may_be_too_large(document)) json_padded = count_json(document);
+  if (Result<void> size = check_glb_size(path, json_padded, buffer); !size) return forward_error(size);
 
   ByteSink sink(file.descriptor());
   put_glb_header(json_padded, buffer, sink);
@@ -124,8 +134,7 @@ Result<std::uint64_t> put_glb(const Document& document, const std::string& path,
   document.emit_json({}, sink);
   sink.fill(' ', padding4(sink.total() - json_start));
   json_padded = sink.total() - json_start;
-  if (Result<void> size = check_glb_size(path, glb_bytes(json_padded, buffer)); !size)
-    return forward_error(size);
+  if (Result<void> size = check_glb_size(path, json_padded, buffer); !size) return forward_error(size);
   put_buffer_chunk(document, sink);
   sink.flush();
   if (sink.failed()) return file.error(sink.error());
@@ -206,7 +215,8 @@ Result<WriteReport> predict(const Scene& scene, const std::string& path, const W
   if (*form == FileForm::glb) {
     report.json_bytes = count_json(document);
     report.bytes = glb_bytes(report.json_bytes, document.buffer_bytes());
-    if (Result<void> size = check_glb_size(path, report.bytes); !size) return forward_error(size);
+    if (Result<void> size = check_glb_size(path, report.json_bytes, document.buffer_bytes()); !size)
+      return forward_error(size);
   } else {
     ByteSink counter;
     document.emit_json(uri_of(binary_path(path)), counter);
