@@ -22,6 +22,7 @@ class ByteSink {
   }
   void commit(char* end) { end_ = end; }
   void write(const void* bytes, std::size_t count) {
+    if (count == 0) return;  // memcpy must not see the null of an empty vector
     if (count > kRoom) return write_large(static_cast<const char*>(bytes), count);
     char* to = reserve(count);
     std::memcpy(to, bytes, count);
