@@ -21,8 +21,9 @@ void plan_object_channels(const Scene& scene, const NodePlan& nodes, AnimationPl
     if (nodes.scale()) ++plan.channel_count;
   };
   const auto want_unit_scale = [&](TrackId track) {
+    if (!nodes.scale()) return;
     std::uint32_t& sampler = plan.unit_scale_of_track[track.value];
-    if (nodes.scale() && sampler == kNone) sampler = planner.scale_sampler({track, {}}, glm::vec3(1.0F));
+    if (sampler == kNone) sampler = planner.scale_sampler({track, {}}, glm::vec3(1.0F));
   };
   for (const Group& group : nodes.groups) {
     if (!group.track.valid()) continue;
