@@ -58,7 +58,8 @@ struct Snapshot {
   }
   friend bool operator==(const Snapshot& a, const Snapshot& b) {
     const auto same = [](const auto& x, const auto& y) {
-      return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0;
+      return x.size() == y.size() &&
+             (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0);
     };
     return same(a.visible, b.visible) && same(a.mesh, b.mesh) && same(a.world, b.world) &&
            same(a.base_color, b.base_color) && same(a.emissive, b.emissive) && same(a.cameras, b.cameras);
