@@ -1,6 +1,7 @@
 // Runs the built programs as a user would and prints CPU seconds, peak memory and file size beside the
 // figures aimed at.
 //   bench_programs BIN_DIR WORK_DIR [--ten-million]
+#include <fcntl.h>
 #include <spawn.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -30,7 +31,12 @@ Usage run(const std::vector<std::string>& command) {
   arguments.push_back(nullptr);
   pid_t child = 0;
   Usage usage;
-  if (posix_spawn(&child, arguments[0], nullptr, nullptr, arguments.data(), environ) != 0) return usage;
+  posix_spawn_file_actions_t quiet;  // what the programs print is no part of the table
+  posix_spawn_file_actions_init(&quiet);
+  posix_spawn_file_actions_addopen(&quiet, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  const int failed = posix_spawn(&child, arguments[0], &quiet, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&quiet);
+  if (failed != 0) return usage;
   struct rusage used {};
   int status = 0;
   wait4(child, &status, 0, &used);
