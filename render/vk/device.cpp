@@ -216,6 +216,7 @@ Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options) {
     }
     std::vector<vk::raii::PhysicalDevice> all = d->instance.enumeratePhysicalDevices();
     std::vector<DeviceInfo> infos;
+    infos.reserve(all.size());
     for (const auto& physical : all)
       infos.push_back(describe(physical, static_cast<std::uint32_t>(infos.size())));
     Result<std::size_t> chosen = choose(all, infos, options.wanted);

@@ -165,7 +165,7 @@ std::string percent_decoded(std::string_view text, const Place& at) {
 }
 
 void decode_base64(std::string_view text, const Place& at, std::vector<std::uint8_t>& out) {
-  static const std::array<std::int8_t, 256> kDigit = [] {
+  static const std::array<std::int8_t, 256> digits = [] {
     std::array<std::int8_t, 256> table{};
     table.fill(-1);
     const std::string_view alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -180,7 +180,7 @@ void decode_base64(std::string_view text, const Place& at, std::vector<std::uint
   std::uint32_t bits = 0;
   int count = 0;
   for (const char c : text) {
-    const std::int8_t digit = kDigit[static_cast<unsigned char>(c)];
+    const std::int8_t digit = digits[static_cast<unsigned char>(c)];
     if (digit < 0) reject(at, "a character that is not base64");
     bits = (bits << 6) | static_cast<std::uint32_t>(digit);
     count += 6;
