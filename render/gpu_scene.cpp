@@ -67,8 +67,7 @@ MaterialRecord material_record(const Material& m) {
     // [cos sin; -sin cos].
     const float c = std::cos(use.uv_rotation_rad);
     const float s = std::sin(use.uv_rotation_rad);
-    r.textures[i].row0 = {c * use.uv_scale.x, s * use.uv_scale.y, use.uv_offset.x,
-                          use.texture.valid() ? 1.0F : 0.0F};
+    r.textures[i].row0 = {c * use.uv_scale.x, s * use.uv_scale.y, use.uv_offset.x, 0.0F};
     r.textures[i].row1 = {-s * use.uv_scale.x, c * use.uv_scale.y, use.uv_offset.y, use.strength};
   }
   return r;
@@ -290,11 +289,13 @@ void GpuScene::make_texture_sets(const vkr::Pipelines& pipelines, const Scene& s
       (*device_.device).allocateDescriptorSets({*pool_, layouts}, *device_.device.getDispatcher());
   for (std::size_t s = 0; s < sets.sets.size(); ++s) {
     std::array<vk::DescriptorImageInfo, kTextureCount> infos;
+    std::uint32_t mask = 0;
     for (std::uint32_t i = 0; i < kTextureCount; ++i) {
       const TextureId id = sets.sets[s][i];
       std::uint32_t index = 0;
       Sampler how;
       if (id.valid()) {
+        mask |= 1U << i;
         const Texture& texture = scene.textures[id.value];
         index = image_index_[texture.image.value][is_srgb(i) ? 1 : 0];
         how = texture.sampler;
@@ -304,6 +305,7 @@ void GpuScene::make_texture_sets(const vkr::Pipelines& pipelines, const Scene& s
     }
     device_.device.updateDescriptorSets(
         vk::WriteDescriptorSet(texture_sets_[s], 0, 0, vk::DescriptorType::eCombinedImageSampler, infos), {});
+    texture_masks_.push_back(mask);
   }
 }
 

@@ -48,6 +48,8 @@ class GpuScene {
   void bind_frame_set(const vk::raii::CommandBuffer& commands, vk::PipelineLayout layout) const;
   void bind_texture_set(const vk::raii::CommandBuffer& commands, vk::PipelineLayout layout,
                         std::uint32_t set) const;
+  /// Bit i: the set has texture i.
+  [[nodiscard]] std::uint32_t texture_mask(std::uint32_t set) const { return texture_masks_[set]; }
   [[nodiscard]] const GeometryRange& range(GeometryId id) const { return ranges_[id.value]; }
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
 
@@ -76,6 +78,7 @@ class GpuScene {
   vk::raii::DescriptorPool pool_{nullptr};
   vk::DescriptorSet frame_set_;
   std::vector<vk::DescriptorSet> texture_sets_;
+  std::vector<std::uint32_t> texture_masks_;
   // Texture of each set entry: index into images_, by (image, is it sRGB).
   std::vector<std::array<std::uint32_t, 2>> image_index_;
 };

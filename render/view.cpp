@@ -138,7 +138,7 @@ View frame_boxes(std::span<const Box> object_bounds_m, float aspect) {
   }
   const Box framed = framed_bounds(object_bounds_m);
   const glm::vec3 centre = framed.empty() ? glm::vec3(0.0F) : framed.centre();
-  const glm::vec3 to_eye = glm::normalize(glm::vec3(0.62F, 0.52F, 1.0F));
+  const glm::vec3 to_eye = glm::normalize(glm::vec3(0.62F, 0.46F, 1.0F));
   const glm::mat4 axes = look_at(centre + to_eye, centre);
   const glm::vec3 right(axes[0]);
   const glm::vec3 up(axes[1]);

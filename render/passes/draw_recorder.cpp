@@ -16,12 +16,13 @@ DrawRecorder::DrawRecorder(const vk::raii::CommandBuffer& commands, vkr::Pipelin
 void DrawRecorder::bind_batch(std::uint32_t batch) {
   batch_ = batch;
   const DrawState& state = scene_.batches()[batch].state;
-  const bool reads_textures =
-      state.texture_set != 0 && (pass_ == vkr::PassKind::color || state.alpha == AlphaMode::mask);
-  const vk::Pipeline pipeline = pipelines_.get({pass_, state.alpha, state.kind, reads_textures});
+  // Depth passes read one texture at most, for the alpha of masked materials.
+  std::uint32_t mask = gpu_.texture_mask(state.texture_set);
+  if (pass_ != vkr::PassKind::color) mask &= state.alpha == AlphaMode::mask ? 1U << kTextureBaseColor : 0U;
+  const vk::Pipeline pipeline = pipelines_.get({pass_, state.alpha, state.kind, mask});
   if (pipeline != pipeline_) commands_.bindPipeline(vk::PipelineBindPoint::eGraphics, pipeline);
   pipeline_ = pipeline;
-  const std::uint32_t set = reads_textures ? state.texture_set : 0;
+  const std::uint32_t set = mask != 0 ? state.texture_set : 0;
   if (set != texture_set_) gpu_.bind_texture_set(commands_, pipelines_.layout(), set);
   texture_set_ = set;
 }

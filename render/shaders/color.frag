@@ -29,12 +29,11 @@ struct Surface {
 // without precomputed tangents").
 vec3 mapped_normal(MaterialRecord material, vec3 n) {
   vec2 uv = texture_place(material, kTextureNormal, in_texcoords);
-  vec3 texel = texture(textures[2], uv).xyz * 2.0 - 1.0;
+  vec3 texel = texture(textures[kTextureNormal], uv).xyz * 2.0 - 1.0;
   vec3 dpx = dFdx(in_world);
   vec3 dpy = dFdy(in_world);
   vec2 dux = dFdx(uv);
   vec2 duy = dFdy(uv);
-  if (!has_texture(material, kTextureNormal)) return n;
   texel.xy *= material.textures[kTextureNormal].row1.w;
   if (dot(in_tangent.xyz, in_tangent.xyz) > 0.0) {
     vec3 t = normalize(in_tangent.xyz - n * dot(in_tangent.xyz, n));
@@ -50,21 +49,22 @@ vec3 mapped_normal(MaterialRecord material, vec3 n) {
   return largest > 0.0 ? normalize(mat3(t * inversesqrt(largest), b * inversesqrt(largest), n) * texel) : n;
 }
 
-// Share of the sun that arrives: 3 x 3 bilinear comparisons.
+// Share of the sun that arrives: four bilinear comparisons, a texel and a half apart.
 float sunlight(vec3 normal) {
   if (camera.to_sun.w == 0.0) return 1.0;
   // Away from the surface by about a texel, more at grazing light: no surface shadows itself.
   float slope = 1.0 - clamp(dot(normal, camera.to_sun.xyz), 0.0, 1.0);
-  vec3 p = in_world + normal * (camera.sky_zenith.w * (0.7 + 1.6 * slope));
+  vec3 p = in_world + normal * (camera.sky_zenith.w * (1.2 + 2.0 * slope));
   vec4 q = camera.shadow_from_world * vec4(p, 1.0);
   vec2 uv = q.xy * 0.5 + 0.5;
   if (any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return 1.0;
-  float step = camera.sky_horizon.w;
+  float texel = camera.sky_horizon.w;
   float sum = 0.0;
-  for (int y = -1; y <= 1; ++y) {
-    for (int x = -1; x <= 1; ++x) sum += texture(shadow_map, vec3(uv + vec2(x, y) * step, q.z));
+  for (int i = 0; i < 4; ++i) {
+    vec2 offset = vec2((i & 1) != 0 ? 0.75 : -0.75, (i & 2) != 0 ? 0.75 : -0.75);
+    sum += texture(shadow_map, vec3(uv + offset * texel, q.z));
   }
-  return sum / 9.0;
+  return sum / 4.0;
 }
 
 // glTF 2.0 appendix B: Lambert and GGX with Smith's correlated visibility and Schlick's Fresnel.
@@ -91,7 +91,7 @@ void sun_light(Surface s, vec3 view, out vec3 diffuse, out vec3 specular) {
 // Sky and ground as a hemisphere light; its mirror image with the split sum's fit of Karis 2014, "Physically
 // based shading on mobile".
 void sky_light(Surface s, vec3 view, out vec3 diffuse, out vec3 specular) {
-  vec3 above = mix(camera.sky_horizon.rgb, camera.sky_zenith.rgb, 0.55);
+  vec3 above = mix(camera.sky_horizon.rgb, camera.sky_zenith.rgb, 0.4);
   vec3 irradiance = mix(camera.ground.rgb, above, 0.5 + 0.5 * s.normal.y);
   float nv = clamp(dot(s.normal, view), 0.0, 1.0);
   vec4 r = s.roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
@@ -112,20 +112,20 @@ void main() {
   float occlusion = 1.0;
   vec3 flat_normal = gl_FrontFacing ? in_normal : -in_normal;
   vec3 normal = flat_normal;
-  if (kTextured) {
-    // Sampled before any branch or discard: derivatives are only defined in uniform control flow.
-    vec4 mr = texture(textures[1], texture_place(material, kTextureMetallicRoughness, in_texcoords));
-    vec4 ao = texture(textures[3], texture_place(material, kTextureOcclusion, in_texcoords));
-    vec4 glow = texture(textures[4], texture_place(material, kTextureEmissive, in_texcoords));
-    normal = mapped_normal(material, flat_normal);
-    if (has_texture(material, kTextureMetallicRoughness)) {
-      metallic *= mr.b;
-      roughness *= mr.g;
-    }
-    if (has_texture(material, kTextureOcclusion))
-      occlusion = 1.0 + material.textures[kTextureOcclusion].row1.w * (ao.r - 1.0);
-    if (has_texture(material, kTextureEmissive)) emissive *= glow.rgb;
+  // The branches are on constants, so all derivatives are in uniform control flow, before any discard.
+  if (has_texture(kTextureMetallicRoughness)) {
+    vec4 mr = texture(textures[kTextureMetallicRoughness],
+                      texture_place(material, kTextureMetallicRoughness, in_texcoords));
+    metallic *= mr.b;
+    roughness *= mr.g;
   }
+  if (has_texture(kTextureNormal)) normal = mapped_normal(material, flat_normal);
+  if (has_texture(kTextureOcclusion)) {
+    float ao = texture(textures[kTextureOcclusion], texture_place(material, kTextureOcclusion, in_texcoords)).r;
+    occlusion = 1.0 + material.textures[kTextureOcclusion].row1.w * (ao - 1.0);
+  }
+  if (has_texture(kTextureEmissive))
+    emissive *= texture(textures[kTextureEmissive], texture_place(material, kTextureEmissive, in_texcoords)).rgb;
   if (kAlphaMode == 1 && base.a < material.emissive.w) discard;
   float alpha = kAlphaMode == 2 ? base.a : 1.0;
 

@@ -6,23 +6,20 @@ layout(set = 0, binding = 1, std430) readonly buffer ObjectBuffer { ObjectRecord
 layout(set = 0, binding = 2, std430) readonly buffer MaterialBuffer { MaterialRecord materials[]; };
 
 layout(constant_id = 0) const int kAlphaMode = 0;  // AlphaMode: opaque, mask, blend
-layout(constant_id = 1) const bool kTextured = true;
+layout(constant_id = 1) const uint kTextureMask = 31;  // bit i: the material has texture i (kTexture…)
 
-// Radiance of the sky (and of the ground below the horizon) in a direction.
+// Radiance of the sky in a direction; below the horizon a haze that darkens slowly downwards.
 vec3 sky_radiance(vec3 direction) {
   float up = direction.y;
   vec3 sky = mix(camera.sky_horizon.rgb, camera.sky_zenith.rgb, pow(clamp(up, 0.0, 1.0), 0.55));
-  return mix(sky, camera.ground.rgb, smoothstep(0.0, -0.12, up));
+  return mix(sky, camera.haze.rgb, smoothstep(0.0, 0.55, -up));
 }
 
-// Khronos PBR Neutral tone mapper (Khronos 2024): leaves colours below 0.8 as they are, and compresses
-// highlights towards white.
+// The highlights of the Khronos PBR Neutral tone mapper (Khronos 2024): colours below 0.76 stay as they are,
+// brighter ones are compressed towards white.
 vec3 tone_map(vec3 color) {
-  const float kStart = 0.8 - 0.04;
+  const float kStart = 0.76;
   const float kDesaturation = 0.15;
-  float least = min(color.r, min(color.g, color.b));
-  float offset = least < 0.08 ? least - 6.25 * least * least : 0.04;
-  color -= offset;
   float peak = max(color.r, max(color.g, color.b));
   if (peak < kStart) return color;
   float d = 1.0 - kStart;

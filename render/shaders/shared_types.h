@@ -24,7 +24,7 @@ struct ObjectRecord {
 
 /// One use of a texture. uv' = (dot(row0.xy, uv) + row0.z, dot(row1.xy, uv) + row1.z).
 struct MaterialTexture {
-  vec4 row0;  // w: 1 when there is a texture, else 0
+  vec4 row0;
   vec4 row1;  // w: strength
 };
 
@@ -57,14 +57,15 @@ struct CameraBlock {
   vec4 sun_radiance;     // w: exposure
   vec4 sky_zenith;       // w: side of a texel of the shadow map, m
   vec4 sky_horizon;      // w: 1 / side of the shadow map in texels
-  vec4 ground;
+  vec4 ground;           // light that the ground throws back
+  vec4 haze;             // what lies far below the horizon
 };
 
 #ifdef __cplusplus
 static_assert(sizeof(ObjectRecord) == 64);
 static_assert(sizeof(MaterialTexture) == 32);
 static_assert(sizeof(MaterialRecord) == 64 + 160);
-static_assert(sizeof(CameraBlock) == 3 * 64 + 6 * 16);
+static_assert(sizeof(CameraBlock) == 3 * 64 + 7 * 16);
 }  // namespace scenegen::render
 #endif
 #endif

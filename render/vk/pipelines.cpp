@@ -189,13 +189,13 @@ vk::Pipeline Pipelines::get(const PipelineKey& key) {
 vk::raii::Pipeline Pipelines::make(const PipelineKey& key) const {
   struct Constants {
     std::int32_t alpha_mode;
-    VkBool32 textured;
+    std::uint32_t texture_mask;
     VkBool32 shadow;
   };
-  const Constants constants{static_cast<std::int32_t>(key.alpha), key.textured ? VK_TRUE : VK_FALSE,
+  const Constants constants{static_cast<std::int32_t>(key.alpha), key.texture_mask,
                             key.pass == PassKind::shadow ? VK_TRUE : VK_FALSE};
   constexpr std::array kEntries{vk::SpecializationMapEntry(0, offsetof(Constants, alpha_mode), 4),
-                                vk::SpecializationMapEntry(1, offsetof(Constants, textured), 4),
+                                vk::SpecializationMapEntry(1, offsetof(Constants, texture_mask), 4),
                                 vk::SpecializationMapEntry(2, offsetof(Constants, shadow), 4)};
   const vk::SpecializationInfo specialization(static_cast<std::uint32_t>(kEntries.size()), kEntries.data(),
                                               sizeof(constants), &constants);

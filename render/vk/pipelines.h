@@ -20,7 +20,7 @@ struct PipelineKey {
   PassKind pass = PassKind::color;
   AlphaMode alpha = AlphaMode::opaque;
   PrimitiveKind kind = PrimitiveKind::triangles;
-  bool textured = false;
+  std::uint32_t texture_mask = 0;  ///< bit i: samples texture i (kTexture…)
   friend auto operator<=>(const PipelineKey&, const PipelineKey&) = default;
 };
 
