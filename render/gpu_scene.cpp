@@ -222,8 +222,8 @@ vk::Sampler GpuScene::sampler(const Sampler& wanted) {
   }
   const int min = wanted.min_filter;
   const bool nearest_min = min == 9728 || min == 9984 || min == 9986;
-  const bool nearest_mip = min == 9984 || min == 9985;
   const bool no_mip = min == 9728 || min == 9729;
+  const bool nearest_mip = no_mip || min == 9984 || min == 9985;
   vk::SamplerCreateInfo create;
   create.magFilter = wanted.mag_filter == 9728 ? vk::Filter::eNearest : vk::Filter::eLinear;
   create.minFilter = nearest_min ? vk::Filter::eNearest : vk::Filter::eLinear;

@@ -8,9 +8,11 @@ layout(set = 0, binding = 3) uniform sampler2DShadow shadow_map;
 layout(location = 0) in vec3 in_world;
 layout(location = 1) in vec3 in_normal;
 layout(location = 2) in vec4 in_tangent;
-layout(location = 3) in vec4 in_texcoords;
-layout(location = 4) in vec4 in_color;
-layout(location = 5) flat in uint in_material;
+layout(location = 3) in vec4 in_color;
+layout(location = 4) flat in uint in_material;
+layout(location = 5) in vec4 in_uv01;
+layout(location = 6) in vec4 in_uv23;
+layout(location = 7) in vec2 in_uv4;
 
 layout(location = 0) out vec4 out_color;
 
@@ -28,7 +30,7 @@ struct Surface {
 // Normal from the map; without tangents in the file, from derivatives (Schüler 2013, "Followup: Normal mapping
 // without precomputed tangents").
 vec3 mapped_normal(MaterialRecord material, vec3 n) {
-  vec2 uv = texture_place(material, kTextureNormal, in_texcoords);
+  vec2 uv = in_uv23.xy;
   vec3 texel = texture(textures[kTextureNormal], uv).xyz * 2.0 - 1.0;
   vec3 dpx = dFdx(in_world);
   vec3 dpy = dFdy(in_world);
@@ -40,8 +42,10 @@ vec3 mapped_normal(MaterialRecord material, vec3 n) {
     vec3 b = cross(n, t) * sign(in_tangent.w);
     return normalize(mat3(t, b, n) * texel);
   }
-  vec3 px = cross(dpy, n);
-  vec3 py = cross(n, dpx);
+  // Screen coordinates run down, and the surface may be seen from behind: either turns the frame over.
+  float turned = dot(cross(dpx, dpy), n) < 0.0 ? -1.0 : 1.0;
+  vec3 px = cross(dpy, n) * turned;
+  vec3 py = cross(n, dpx) * turned;
   vec3 t = px * dux.x + py * duy.x;
   // glTF: +v runs down the picture and the green channel up it, so the bitangent is against v.
   vec3 b = -(px * dux.y + py * duy.y);
@@ -92,7 +96,7 @@ void sun_light(Surface s, vec3 view, out vec3 diffuse, out vec3 specular) {
 // based shading on mobile".
 void sky_light(Surface s, vec3 view, out vec3 diffuse, out vec3 specular) {
   vec3 above = mix(camera.sky_horizon.rgb, camera.sky_zenith.rgb, 0.4);
-  vec3 irradiance = mix(camera.ground.rgb, above, 0.5 + 0.5 * s.normal.y);
+  vec3 irradiance = camera.haze.w * mix(camera.ground.rgb, above, 0.5 + 0.5 * s.normal.y);
   float nv = clamp(dot(s.normal, view), 0.0, 1.0);
   vec4 r = s.roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
   float a = min(r.x * r.x, exp2(-9.28 * nv)) * r.x + r.y;
@@ -105,7 +109,7 @@ void sky_light(Surface s, vec3 view, out vec3 diffuse, out vec3 specular) {
 
 void main() {
   MaterialRecord material = materials[in_material];
-  vec4 base = base_color(material, in_texcoords, in_color);
+  vec4 base = base_color(material, in_uv01.xy, in_color);
   vec3 emissive = material.emissive.rgb;
   float metallic = material.factors.x;
   float roughness = material.factors.y;
@@ -114,18 +118,17 @@ void main() {
   vec3 normal = flat_normal;
   // The branches are on constants, so all derivatives are in uniform control flow, before any discard.
   if (has_texture(kTextureMetallicRoughness)) {
-    vec4 mr = texture(textures[kTextureMetallicRoughness],
-                      texture_place(material, kTextureMetallicRoughness, in_texcoords));
+    vec4 mr = texture(textures[kTextureMetallicRoughness], in_uv01.zw);
     metallic *= mr.b;
     roughness *= mr.g;
   }
   if (has_texture(kTextureNormal)) normal = mapped_normal(material, flat_normal);
   if (has_texture(kTextureOcclusion)) {
-    float ao = texture(textures[kTextureOcclusion], texture_place(material, kTextureOcclusion, in_texcoords)).r;
+    float ao = texture(textures[kTextureOcclusion], in_uv23.zw).r;
     occlusion = 1.0 + material.textures[kTextureOcclusion].row1.w * (ao - 1.0);
   }
   if (has_texture(kTextureEmissive))
-    emissive *= texture(textures[kTextureEmissive], texture_place(material, kTextureEmissive, in_texcoords)).rgb;
+    emissive *= texture(textures[kTextureEmissive], in_uv4).rgb;
   if (kAlphaMode == 1 && base.a < material.emissive.w) discard;
   float alpha = kAlphaMode == 2 ? base.a : 1.0;
 

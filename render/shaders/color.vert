@@ -5,9 +5,12 @@
 layout(location = 0) out vec3 out_world;
 layout(location = 1) out vec3 out_normal;
 layout(location = 2) out vec4 out_tangent;
-layout(location = 3) out vec4 out_texcoords;
-layout(location = 4) out vec4 out_color;
-layout(location = 5) flat out uint out_material;
+layout(location = 3) out vec4 out_color;
+layout(location = 4) flat out uint out_material;
+// Places of the textures: base colour and metallic-roughness, normal and occlusion, emissive.
+layout(location = 5) out vec4 out_uv01;
+layout(location = 6) out vec4 out_uv23;
+layout(location = 7) out vec2 out_uv4;
 
 void main() {
   ObjectRecord record = objects[gl_InstanceIndex];
@@ -24,7 +27,13 @@ void main() {
   out_normal = dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0.0);
   vec3 tangent = m * in_tangent.xyz;
   out_tangent = dot(tangent, tangent) > 0.0 ? vec4(normalize(tangent), in_tangent.w * inside_out) : vec4(0.0);
-  out_texcoords = vec4(in_texcoord0, in_texcoord1);
   out_color = in_color;
   out_material = record.material;
+  out_uv01 = out_uv23 = vec4(0.0);
+  out_uv4 = vec2(0.0);
+  if (kTextureMask != 0) {
+    out_uv01 = vec4(texture_place(record.material, 0), texture_place(record.material, 1));
+    out_uv23 = vec4(texture_place(record.material, 2), texture_place(record.material, 3));
+    out_uv4 = texture_place(record.material, 4);
+  }
 }

@@ -5,7 +5,7 @@
 
 layout(constant_id = 2) const bool kShadow = false;
 
-layout(location = 0) out vec4 out_texcoords;
+layout(location = 0) out vec2 out_uv;
 layout(location = 1) out vec4 out_color;
 layout(location = 2) flat out uvec2 out_material_object;
 
@@ -18,7 +18,7 @@ void main() {
     gl_Position = clip_position(world);
   }
   gl_PointSize = 1.0;
-  out_texcoords = vec4(in_texcoord0, in_texcoord1);
+  out_uv = kTextureMask != 0 ? texture_place(record.material, kTextureBaseColor) : vec2(0.0);
   out_color = in_color;
   out_material_object = uvec2(record.material, record.object);
 }

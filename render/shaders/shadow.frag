@@ -3,11 +3,11 @@
 #include "common.glsl"
 #include "material.glsl"
 
-layout(location = 0) in vec4 in_texcoords;
+layout(location = 0) in vec2 in_uv;
 layout(location = 1) in vec4 in_color;
 layout(location = 2) flat in uvec2 in_material_object;
 
 void main() {
   MaterialRecord material = materials[in_material_object.x];
-  if (base_color(material, in_texcoords, in_color).a < material.emissive.w) discard;
+  if (base_color(material, in_uv, in_color).a < material.emissive.w) discard;
 }

@@ -58,7 +58,7 @@ struct CameraBlock {
   vec4 sky_zenith;       // w: side of a texel of the shadow map, m
   vec4 sky_horizon;      // w: 1 / side of the shadow map in texels
   vec4 ground;           // light that the ground throws back
-  vec4 haze;             // what lies far below the horizon
+  vec4 haze;             // what lies far below the horizon; w: share of the sky's radiance that lights
 };
 
 #ifdef __cplusplus

@@ -168,12 +168,8 @@ void make_logical_device(vkr::Device& d) {
   create.pNext = &features;
   d.device = vk::raii::Device(d.physical, create);
   d.queue = vk::raii::Queue(d.device, d.queue_family, 0);
-  // llvmpipe filters anisotropically in a scalar loop: a textured town took 140 s a frame with it and 0.5 s
-  // without.
-  const bool slow = d.properties.deviceType == vk::PhysicalDeviceType::eCpu;
-  d.max_anisotropy = available.samplerAnisotropy != VK_FALSE && !slow
-                         ? std::min(8.0F, d.properties.limits.maxSamplerAnisotropy)
-                         : 1.0F;
+  d.max_anisotropy =
+      available.samplerAnisotropy != VK_FALSE ? std::min(4.0F, d.properties.limits.maxSamplerAnisotropy) : 1.0F;
 }
 
 }  // namespace

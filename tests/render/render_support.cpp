@@ -40,7 +40,8 @@ MeshId add_mesh(Scene& scene, Geometry geometry, const Material& material) {
   scene.materials.push_back(material);
   Mesh mesh;
   mesh.name = "mesh " + std::to_string(scene.meshes.size());
-  mesh.primitives.push_back({GeometryId(scene.geometries.size() - 1), MaterialId(scene.materials.size() - 1)});
+  mesh.primitives.push_back(
+      {GeometryId(scene.geometries.size() - 1), MaterialId(scene.materials.size() - 1)});
   scene.meshes.push_back(mesh);
   return MeshId(scene.meshes.size() - 1);
 }
@@ -65,7 +66,8 @@ Material plain(const glm::vec4& color, bool unlit) {
 void appear_at(Scene& scene, ObjectId id, float time_s) {
   const std::array times{0.0F, time_s};
   const std::array values{0.0F, 1.0F};
-  scene.objects.visibility[id.value] = scene.add_track(Property::visibility, Interpolation::step, times, values);
+  scene.objects.visibility[id.value] =
+      scene.add_track(Property::visibility, Interpolation::step, times, values);
   scene.duration_s = std::max(scene.duration_s, time_s + 1.0F);
 }
 
@@ -84,10 +86,10 @@ Scene wall_scene() {
   for (int y = 0; y < 6; ++y) {
     for (int x = 0; x < 8; ++x) {
       if (y >= 2 && y <= 3 && x >= 3 && x <= 4) continue;
-      const glm::vec3 at(static_cast<float>(x) - 3.5F + (y % 2 == 0 ? 0.0F : 0.25F), 0.25F + 0.5F * static_cast<float>(y),
-                         0.0F);
-      const ObjectId id = add_object(scene, "brick_" + std::to_string(n), bricks[static_cast<std::size_t>(n) % 3], at,
-                                     {0.98F, 0.48F, 0.5F});
+      const glm::vec3 at(static_cast<float>(x) - 3.5F + (y % 2 == 0 ? 0.0F : 0.25F),
+                         0.25F + 0.5F * static_cast<float>(y), 0.0F);
+      const ObjectId id = add_object(scene, "brick_" + std::to_string(n),
+                                     bricks[static_cast<std::size_t>(n) % 3], at, {0.98F, 0.48F, 0.5F});
       appear_at(scene, id, 0.1F * static_cast<float>(++n));
     }
   }

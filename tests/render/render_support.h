@@ -13,6 +13,15 @@
 #include "scene/scene.h"
 #include "timeline/player.h"
 
+namespace Catch {
+template <>
+struct StringMaker<glm::ivec3> {
+  static std::string convert(const glm::ivec3& v) {
+    return std::to_string(v.x) + " " + std::to_string(v.y) + " " + std::to_string(v.z);
+  }
+};
+}  // namespace Catch
+
 namespace scenegen::render::test {
 
 /// Unit box round the origin, 24 vertices with normals and texture coordinates.
@@ -41,7 +50,8 @@ RendererOptions test_options();
 /// error or validation message.
 std::vector<FrameResult> render(const Scene& scene, const std::vector<double>& times_s, const View& view,
                                 const RendererOptions& options);
-FrameResult render_one(const Scene& scene, const View& view, const RendererOptions& options, double time_s = 0);
+FrameResult render_one(const Scene& scene, const View& view, const RendererOptions& options,
+                       double time_s = 0);
 
 /// Red, green, blue of a pixel.
 glm::ivec3 pixel(const FrameResult& frame, glm::uvec2 size, std::uint32_t x, std::uint32_t y);

@@ -1,0 +1,156 @@
+// sceneplay as a person runs it: pictures, their names and forms, the report, and every kind of wrong call.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "scene/gltf/write.h"
+#include "tests/render/render_support.h"
+#include "tests/tools/process.h"
+#include "tools/frame_times.h"
+
+using namespace scenegen;
+using namespace scenegen::test;
+using tools::film_times;
+using tools::parse_times;
+
+namespace {
+
+ProcessResult play(const std::string& line, const ProcessOptions& options = {}) {
+  return run(SCENEPLAY_PROGRAM, words(line), options);
+}
+
+std::string wall_file(const TemporaryFolder& folder) {
+  const std::string path = folder.file("wall.glb");
+  REQUIRE(gltf::write(render::test::wall_scene(), path, {}));
+  return path;
+}
+
+void check_error(const ProcessResult& result, int code, const std::string& part) {
+  INFO(result.err);
+  CHECK(result.signal == 0);
+  CHECK(result.code == code);
+  CHECK(result.out.empty());
+  CHECK(result.err.starts_with("error: "));
+  CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+  CHECK_THAT(result.err, Catch::Matchers::Contains(part));
+}
+
+}  // namespace
+
+TEST_CASE("times: seconds, percentages, ranges") {
+  CHECK(parse_times("1.5,50%,0", 8).value() == std::vector<double>{1.5, 4, 0});
+  CHECK(parse_times("2:4:0.5", 8).value() == std::vector<double>{2, 2.5, 3, 3.5, 4});
+  CHECK(parse_times("0:100%:25%", 8).value() == std::vector<double>{0, 2, 4, 6, 8});
+  CHECK(parse_times("0:1:0.1", 8).value().size() == 11);
+  for (const char* wrong : {"", ",", "1,,2", "a", "-1", "101%", "9", "nan", "inf", "1:2", "2:1:1", "1:2:0", "1:2:3:4", "0:8:1e-9"}) {
+    INFO(wrong);
+    const auto times = parse_times(wrong, 8);
+    REQUIRE_FALSE(times);
+    CHECK(times.error().kind == ErrorKind::usage);
+  }
+  CHECK(film_times(10, 0.4, 8).value() == std::vector<double>{0, 2, 4, 6, 8});
+  CHECK(film_times(1, 0.1, 8).value() == std::vector<double>{8});
+  CHECK_FALSE(film_times(10000, 1e6, 8));
+}
+
+TEST_CASE("frames: files, names, report and the line at the end") {
+  const TemporaryFolder folder;
+  const std::string file = wall_file(folder);
+  const std::string out = folder.file("deep/out");
+  const auto result = play("frames " + file + " -o " + out + " --size 64x36 --times 0,50%,100% --ids --depth --report " +
+                           folder.file("r.json"));
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  CHECK(result.err.empty());
+  CHECK_THAT(result.out, Catch::Matchers::Contains("3 frames  64x36") && Catch::Matchers::Contains("48 objects"));
+  for (const char* name : {"frame_00000.png", "frame_00002.png", "ids_00001.png"})
+    CHECK(read_file(out + "/" + name).starts_with("\x89PNG"));
+  CHECK(read_file(out + "/depth_00002.pfm").starts_with("Pf\n64 36\n-1.0\n"));
+  const auto report = nlohmann::json::parse(read_file(folder.file("r.json")));
+  CHECK(report["schema"] == "sceneplay/frames");
+  CHECK(report["version"] == 1);
+  REQUIRE(report["frames"].size() == 3);
+  CHECK(report["frames"][0]["visible"] == 4);
+  CHECK(report["frames"][2]["visible"] == 48);
+  CHECK(report["frames"][1]["timeS"].get<double>() == Approx(report["frames"][2]["timeS"].get<double>() / 2));
+  for (const char* stage : {"seek", "update", "cull", "record", "submit", "wait", "gpu", "readback", "encode"})
+    CHECK(report["frames"][1]["stagesMs"].contains(stage));
+  // The same call gives the same bytes.
+  const auto again = play("frames " + file + " -o " + folder.file("again") + " --size 64x36 --times 0,50%,100% --quiet");
+  CHECK(again.code == 0);
+  CHECK(again.out.empty());
+  for (const char* name : {"frame_00000.png", "frame_00001.png", "frame_00002.png"})
+    CHECK(read_file(out + "/" + name) == read_file(folder.file("again") + "/" + name));
+}
+
+TEST_CASE("frames: film, forms, camera path, clean under validation") {
+  const TemporaryFolder folder;
+  const std::string file = wall_file(folder);
+  write_file(folder.file("path.json"), R"({"keys":[{"time_s":0,"eye_m":[0,2,9],"target_m":[0,1,0]}]})");
+  const auto jpg = play("frames " + file + " -o " + folder.file("jpg") + " --size 32x18 --fps 4 --duration 1 --format jpg " +
+                        "--camera-path " + folder.file("path.json") + " --validation on --samples 1");
+  INFO(jpg.err);
+  CHECK(jpg.code == 0);
+  CHECK(read_file(folder.file("jpg/frame_00004.jpg")).starts_with("\xFF\xD8"));
+  const auto bmp = play("frames " + file + " -o " + folder.file("bmp") + " --size 32x18 --times 0 --format bmp --shadows off "
+                        "--strategy brute --barriers full --camera auto");
+  CHECK(bmp.code == 0);
+  CHECK(read_file(folder.file("bmp/frame_00000.bmp")).starts_with("BM"));
+}
+
+TEST_CASE("wrong calls: one line and the right exit code") {
+  const TemporaryFolder folder;
+  const std::string file = wall_file(folder);
+  const std::string start = "frames " + file + " -o " + folder.file("out") + " --size 16x9 ";
+  check_error(play("frames " + file), 2, "--output: missing");
+  check_error(play("frames -o x"), 2, "FILE");
+  check_error(play(start + "--size 0x9"), 2, "--size");
+  check_error(play(start + "--size 99999x9"), 2, "--size");
+  check_error(play(start + "--times 101%"), 2, "--times: ");
+  check_error(play(start + "--times 99"), 2, "--times: '99' is behind the end");
+  check_error(play(start + "--times 0 --fps 25"), 2, "--times");
+  check_error(play(start + "--fps 0"), 2, "--fps");
+  check_error(play(start + "--fps 10000 --duration 1000000"), 2, "--fps");
+  check_error(play(start + "--camera front"), 2, "--camera");
+  check_error(play(start + "--camera auto --camera-path x"), 2, "--camera");
+  check_error(play(start + "--camera-path " + folder.file("none.json")), 3, "none.json");
+  check_error(play(start + "--camera-path " + file), 1, "wall.glb");
+  check_error(play(start + "--strategy inlin"), 2, "inline");
+  check_error(play(start + "--samples 2"), 2, "--samples");
+  check_error(play(start + "--format gif"), 2, "--format");
+  check_error(play(start + "--device nonesuch"), 2, "--device");
+  check_error(play(start + "--nonesuch"), 2, "--nonesuch");
+  check_error(play("frames " + folder.file("none.glb") + " -o " + folder.file("out")), 3, "none.glb");
+  check_error(play("frams x"), 2, "frames");
+  check_error(play(file), 2, "sceneplay frames");
+  write_file(folder.file("broken.glb"), "glTF and nothing");
+  check_error(play("frames " + folder.file("broken.glb") + " -o " + folder.file("out")), 1, "broken.glb");
+  CHECK(folder.entries() == std::vector<std::string>{"broken.glb", "wall.glb"});
+  write_file(folder.file("taken"), "");
+  check_error(play("frames " + file + " -o " + folder.file("taken")), 3, "taken");
+}
+
+TEST_CASE("no Vulkan device is exit code 4, devices are listed") {
+  const TemporaryFolder folder;
+  const std::string file = wall_file(folder);
+  const auto listed = play("--list-devices");
+  CHECK(listed.code == 0);
+  CHECK(listed.out.starts_with("0  "));
+  ::setenv("VK_ICD_FILENAMES", "/nonexistent.json", 1);
+  ::setenv("VK_DRIVER_FILES", "/nonexistent.json", 1);
+  check_error(play("frames " + file + " -o " + folder.file("out")), 4, "Vulkan");
+  ::unsetenv("VK_ICD_FILENAMES");
+  ::unsetenv("VK_DRIVER_FILES");
+}
+
+TEST_CASE("a full disk leaves no half a picture") {
+  const TemporaryFolder folder;
+  const std::string file = wall_file(folder);
+  ProcessOptions full;
+  full.most_file_bytes = 1000;
+  const auto result = play("frames " + file + " -o " + folder.file("out") + " --size 64x36 --times 100%", full);
+  CHECK(result.code == 3);
+  CHECK_FALSE(std::filesystem::exists(folder.file("out/frame_00000.png")));
+}
