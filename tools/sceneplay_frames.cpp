@@ -303,10 +303,10 @@ Result<void> draw(const FramesRequest& request, const Options& options) {
   if (!times) return forward_error(times);
   auto camera = CameraMan::make(request, scene);
   if (!camera) return forward_error(camera);
-  if (auto made = make_folder(request.folder); !made) return made;
   timeline::Player player(timeline::compile(scene));
   auto renderer = render::Renderer::create(scene, player, renderer_options(request));
   if (!renderer) return forward_error(renderer);
+  if (auto made = make_folder(request.folder); !made) return made;
   if (!request.quiet) {
     for (const std::string& warning : renderer->warnings())
       std::fprintf(stderr, "warning: %s\n", warning.c_str());

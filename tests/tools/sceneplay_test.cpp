@@ -44,7 +44,8 @@ TEST_CASE("times: seconds, percentages, ranges") {
   CHECK(parse_times("2:4:0.5", 8).value() == std::vector<double>{2, 2.5, 3, 3.5, 4});
   CHECK(parse_times("0:100%:25%", 8).value() == std::vector<double>{0, 2, 4, 6, 8});
   CHECK(parse_times("0:1:0.1", 8).value().size() == 11);
-  for (const char* wrong : {"", ",", "1,,2", "a", "-1", "101%", "9", "nan", "inf", "1:2", "2:1:1", "1:2:0", "1:2:3:4", "0:8:1e-9"}) {
+  for (const char* wrong : {"", ",", "1,,2", "a", "-1", "101%", "9", "nan", "inf", "1:2", "2:1:1", "1:2:0",
+                            "1:2:3:4", "0:8:1e-9"}) {
     INFO(wrong);
     const auto times = parse_times(wrong, 8);
     REQUIRE_FALSE(times);
@@ -59,12 +60,14 @@ TEST_CASE("frames: files, names, report and the line at the end") {
   const TemporaryFolder folder;
   const std::string file = wall_file(folder);
   const std::string out = folder.file("deep/out");
-  const auto result = play("frames " + file + " -o " + out + " --size 64x36 --times 0,50%,100% --ids --depth --report " +
-                           folder.file("r.json"));
+  const auto result =
+      play("frames " + file + " -o " + out + " --size 64x36 --times 0,50%,100% --ids --depth --report " +
+           folder.file("r.json"));
   INFO(result.err);
   REQUIRE(result.code == 0);
   CHECK(result.err.empty());
-  CHECK_THAT(result.out, Catch::Matchers::Contains("3 frames  64x36") && Catch::Matchers::Contains("48 objects"));
+  CHECK_THAT(result.out,
+             Catch::Matchers::Contains("3 frames  64x36") && Catch::Matchers::Contains("48 objects"));
   for (const char* name : {"frame_00000.png", "frame_00002.png", "ids_00001.png"})
     CHECK(read_file(out + "/" + name).starts_with("\x89PNG"));
   CHECK(read_file(out + "/depth_00002.pfm").starts_with("Pf\n64 36\n-1.0\n"));
@@ -75,10 +78,12 @@ TEST_CASE("frames: files, names, report and the line at the end") {
   CHECK(report["frames"][0]["visible"] == 4);
   CHECK(report["frames"][2]["visible"] == 48);
   CHECK(report["frames"][1]["timeS"].get<double>() == Approx(report["frames"][2]["timeS"].get<double>() / 2));
-  for (const char* stage : {"seek", "update", "cull", "record", "submit", "wait", "gpu", "readback", "encode"})
+  for (const char* stage :
+       {"seek", "update", "cull", "record", "submit", "wait", "gpu", "readback", "encode"})
     CHECK(report["frames"][1]["stagesMs"].contains(stage));
   // The same call gives the same bytes.
-  const auto again = play("frames " + file + " -o " + folder.file("again") + " --size 64x36 --times 0,50%,100% --quiet");
+  const auto again =
+      play("frames " + file + " -o " + folder.file("again") + " --size 64x36 --times 0,50%,100% --quiet");
   CHECK(again.code == 0);
   CHECK(again.out.empty());
   for (const char* name : {"frame_00000.png", "frame_00001.png", "frame_00002.png"})
@@ -89,12 +94,14 @@ TEST_CASE("frames: film, forms, camera path, clean under validation") {
   const TemporaryFolder folder;
   const std::string file = wall_file(folder);
   write_file(folder.file("path.json"), R"({"keys":[{"time_s":0,"eye_m":[0,2,9],"target_m":[0,1,0]}]})");
-  const auto jpg = play("frames " + file + " -o " + folder.file("jpg") + " --size 32x18 --fps 4 --duration 1 --format jpg " +
-                        "--camera-path " + folder.file("path.json") + " --validation on --samples 1");
+  const auto jpg = play("frames " + file + " -o " + folder.file("jpg") +
+                        " --size 32x18 --fps 4 --duration 1 --format jpg " + "--camera-path " +
+                        folder.file("path.json") + " --validation on --samples 1");
   INFO(jpg.err);
   CHECK(jpg.code == 0);
   CHECK(read_file(folder.file("jpg/frame_00004.jpg")).starts_with("\xFF\xD8"));
-  const auto bmp = play("frames " + file + " -o " + folder.file("bmp") + " --size 32x18 --times 0 --format bmp --shadows off "
+  const auto bmp = play("frames " + file + " -o " + folder.file("bmp") +
+                        " --size 32x18 --times 0 --format bmp --shadows off "
                         "--strategy brute --barriers full --camera auto");
   CHECK(bmp.code == 0);
   CHECK(read_file(folder.file("bmp/frame_00000.bmp")).starts_with("BM"));
@@ -150,7 +157,8 @@ TEST_CASE("a full disk leaves no half a picture") {
   const std::string file = wall_file(folder);
   ProcessOptions full;
   full.most_file_bytes = 1000;
-  const auto result = play("frames " + file + " -o " + folder.file("out") + " --size 64x36 --times 100%", full);
+  const auto result =
+      play("frames " + file + " -o " + folder.file("out") + " --size 64x36 --times 100%", full);
   CHECK(result.code == 3);
   CHECK_FALSE(std::filesystem::exists(folder.file("out/frame_00000.png")));
 }
