@@ -1,4 +1,5 @@
 #include <cstring>
+#include <set>
 
 #include "scene/gltf/build.h"
 #include "scene/limits.h"
@@ -14,35 +15,55 @@ std::string_view kind_of(const std::vector<std::uint8_t>& bytes) {
   return {};
 }
 
-/// Bytes of an image; empty (and ignored) when its file is missing.
-Image read_image(const ImageRecord& record, Document& document, Data& data, const std::string& folder,
-                 const Place& at) {
+class ImageReader {
+ public:
+  ImageReader(Document& document, Data& data, const std::string& folder)
+      : document_(document), data_(data), folder_(folder) {}
+  /// Bytes of an image; empty (and ignored) when its file is missing.
+  Image read(const ImageRecord& record, const Place& at);
+
+ private:
+  std::vector<std::uint8_t> read_image_file(std::string_view uri, const Place& at);
+
+  Document& document_;
+  Data& data_;
+  const std::string& folder_;
+  std::set<std::string> opened_;
+};
+
+std::vector<std::uint8_t> ImageReader::read_image_file(std::string_view uri, const Place& at) {
+  const std::string path = resolve_uri(uri, folder_, at);
+  try {
+    const Block block = read_file(path, at, false, limits::kMaxGlbBytes);
+    if (!opened_.insert(path).second)
+      data_.budget().take(block.size, at);  // again: a copy that no file's size pays for
+    return {block.data.get(), block.data.get() + block.size};
+  } catch (const Fault& fault) {
+    if (fault.error.kind != ErrorKind::io) throw;
+    document_.ignored.add(at, "image files that cannot be read");
+    return {};
+  }
+}
+
+Image ImageReader::read(const ImageRecord& record, const Place& at) {
   Image image;
   image.name = record.name;
   image.mime_type = record.mime_type;
   const Place uri = at.key("uri");
   if (!record.has_uri) {
-    const Bytes bytes = data.view(record.view, at.key("bufferView"));
-    data.budget().take(bytes.size(), at);
+    const Bytes bytes = data_.view(record.view, at.key("bufferView"));
+    data_.budget().take(bytes.size(), at);
     image.bytes.assign(bytes.begin(), bytes.end());
   } else if (std::string type; decode_data_uri(record.uri, uri, image.bytes, &type)) {
     if (image.mime_type.empty()) image.mime_type = type;
   } else {
-    const std::string path = resolve_uri(record.uri, folder, uri);
-    try {
-      const Block block = read_file(path, uri, false, limits::kMaxGlbBytes);
-      data.budget().take(block.size, at);
-      image.bytes.assign(block.data.get(), block.data.get() + block.size);
-    } catch (const Fault& fault) {
-      if (fault.error.kind != ErrorKind::io) throw;
-      document.ignored.add(uri, "image files that cannot be read");
-    }
+    image.bytes = read_image_file(record.uri, uri);
   }
   const std::string_view kind = kind_of(image.bytes);
   if (!kind.empty()) {
     image.mime_type = kind;
   } else if (!image.bytes.empty()) {
-    document.ignored.add(at, "images that are neither PNG nor JPEG");
+    document_.ignored.add(at, "images that are neither PNG nor JPEG");
   }
   return image;
 }
@@ -57,8 +78,9 @@ void build_materials(Document& document, Data& data, const std::string& folder, 
   const Place root;
   const Place images = root.key("images");
   std::vector<bool> readable;
+  ImageReader reader(document, data, folder);
   for (std::size_t i = 0; i < document.images.size(); ++i) {
-    scene.images.push_back(read_image(document.images[i], document, data, folder, images.at(i)));
+    scene.images.push_back(reader.read(document.images[i], images.at(i)));
     readable.push_back(!kind_of(scene.images.back().bytes).empty());
   }
   const Place textures = root.key("textures");

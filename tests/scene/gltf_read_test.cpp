@@ -320,6 +320,12 @@ TEST_CASE("files beside the document: percent-encoding, folders, what is refused
   CHECK(good->scene.geometries[0].positions_m[1] == glm::vec3(1, 0, 0));
   CHECK(find_ignored(*good, "image files that cannot be read")->where == "/images/0/uri");
   CHECK(read_as("../a%20b.bin", "sub/x.gltf"));
+  std::ofstream(folder / "missing.png") << "x";
+  std::filesystem::resize_file(folder / "missing.png", 70U << 20);  // images may be larger than all the rest
+  const auto large = read_as("a%20b.bin", "x.gltf");
+  REQUIRE(large);
+  CHECK(large->scene.images[0].bytes.size() == 70U << 20);
+  CHECK(find_ignored(*large, "images that are neither PNG nor JPEG") != nullptr);
   const auto missing = read_as("c.bin", "x.gltf");
   REQUIRE(!missing);
   CHECK(missing.error().kind == ErrorKind::io);
