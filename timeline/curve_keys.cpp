@@ -12,7 +12,7 @@
 namespace scenegen::timeline {
 namespace {
 
-constexpr unsigned kMaxBits = 21;
+[[maybe_unused]] constexpr unsigned kMaxBits = 21;
 
 /// Bit i of the result is bit i/3 of `v` for i divisible by 3 ("magic bits").
 constexpr std::uint64_t spread(std::uint64_t v) {
