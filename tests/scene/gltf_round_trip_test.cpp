@@ -10,6 +10,7 @@
 #include "scene/gltf/write.h"
 #include "scene/validate.h"
 #include "tests/support/synthetic_scene.h"
+#include "tests/timeline/random_scene.h"
 #include "timeline/compare.h"
 
 namespace {
@@ -177,6 +178,21 @@ TEST_CASE("a town comes back from all combinations, its tracks still shared") {
     CHECK(result.scene.tracks.size() == kMoments);
     CHECK(result.scene.frames.empty());
     CHECK(result.scene.duration_s == scene.duration_s);
+  }
+}
+
+TEST_CASE("random scenes come back the same to see") {
+  const TemporaryFolder folder;
+  const std::vector<Combination> all = combinations();
+  for (std::uint64_t seed = 0; seed < 54; ++seed) {
+    const Scene scene = timeline::test::RandomScene(seed).make(60, 8);
+    const Combination& c = all[seed % all.size()];
+    INFO("seed " << seed << " layout " << int(c.layout) << " visibility " << int(c.visibility) << " "
+                 << c.extension);
+    const gltf::ReadResult result = round_trip(scene, c, folder.path.string());
+    CHECK(validate(result.scene).empty());
+    CHECK(result.scene.objects.names == scene.objects.names);
+    check_same_to_see(scene, result.scene);
   }
 }
 
