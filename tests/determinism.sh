@@ -2,18 +2,19 @@
 # Same arguments, same bytes: 1, 2 and 8 threads, debug and release, g++ and clang.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-for preset in release debug clang; do
-  cmake --preset $preset >/dev/null
-  cmake --build --preset $preset --target scenegen >/dev/null
-done
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
+log=$out/log
+for preset in release debug clang; do
+  cmake --preset $preset >"$log" 2>&1 || { cat "$log"; exit 1; }
+  cmake --build --preset $preset --target scenegen >"$log" 2>&1 || { cat "$log"; exit 1; }
+done
 failed=0
 check() {  # check ARGUMENTS...: one hash over all builds and thread counts
   local hashes
   hashes=$(for preset in release debug clang; do
     for threads in 1 2 8; do
-      "build/$preset/bin/scenegen" "$@" --threads $threads --quiet -o "$out/a.glb" 2>/dev/null
+      "build/$preset/bin/scenegen" "$@" --threads $threads --quiet -o "$out/a.glb" 2>"$log" 2>&1 || { cat "$log"; exit 1; }
       sha256sum <"$out/a.glb"
     done
   done | sort -u)

@@ -68,8 +68,7 @@ std::uint64_t each_element(Value value, const Place& at, F&& f) {
   std::uint64_t index = 0;
   for (auto entry : array) {
     Value element;
-    if (const auto code = entry.get(element); code != simdjson::SUCCESS)
-      reject_json(at, code, "an array");
+    if (const auto code = entry.get(element); code != simdjson::SUCCESS) reject_json(at, code, "an array");
     f(element, at.at(index));
     ++index;
   }

@@ -71,7 +71,8 @@ void parse_matrix(Value value, const Place& at, Node& node, Document& out) {
   NodeDetail& detail = detail_of(node, out);
   detail.has_matrix = true;
   for (int c = 0; c < 4; ++c) {
-    for (int r = 0; r < 4; ++r) detail.matrix[c][r] = f[static_cast<std::size_t>(c) * 4 + static_cast<std::size_t>(r)];
+    for (int r = 0; r < 4; ++r)
+      detail.matrix[c][r] = f[static_cast<std::size_t>(c) * 4 + static_cast<std::size_t>(r)];
   }
   if (f[3] != 0 || f[7] != 0 || f[11] != 0 || f[15] != 1) reject(at, "its last row is not 0 0 0 1");
 }
