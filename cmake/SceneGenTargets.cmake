@@ -55,12 +55,17 @@ function(scenegen_program name)
   target_link_libraries(${name} PRIVATE scenegen_settings ${A_LIBRARIES})
 endfunction()
 
-# scenegen_test(timeline/curves SOURCES curves_test.cpp LIBRARIES …): a Catch2 program, one ctest entry.
+# scenegen_test(timeline/curves SOURCES curves_test.cpp LIBRARIES …): a Catch2 program, one ctest entry. Tests that need neither
+# Vulkan nor long carry the label `sanitized` and belong to the target sanitized_tests: CI runs them under ASan and UBSan too.
 function(scenegen_test name)
   cmake_parse_arguments(A "" "" "SOURCES;LIBRARIES;LABELS;ARGUMENTS" ${ARGN})
   string(REPLACE "/" "_" target test_${name})
   add_executable(${target} ${A_SOURCES})
   target_link_libraries(${target} PRIVATE scenegen_settings scenegen_test_main ${A_LIBRARIES})
   add_test(NAME ${name} COMMAND ${target} ${A_ARGUMENTS})
+  if(NOT name MATCHES "^render/|sceneplay" AND NOT A_LABELS)
+    set(A_LABELS sanitized)
+    add_dependencies(sanitized_tests ${target})
+  endif()
   set_tests_properties(${name} PROPERTIES LABELS "${A_LABELS}" TIMEOUT 600)
 endfunction()

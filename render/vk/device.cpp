@@ -168,8 +168,9 @@ void make_logical_device(vkr::Device& d) {
   create.pNext = &features;
   d.device = vk::raii::Device(d.physical, create);
   d.queue = vk::raii::Queue(d.device, d.queue_family, 0);
-  d.max_anisotropy =
-      available.samplerAnisotropy != VK_FALSE ? std::min(4.0F, d.properties.limits.maxSamplerAnisotropy) : 1.0F;
+  d.max_anisotropy = available.samplerAnisotropy != VK_FALSE
+                         ? std::min(4.0F, d.properties.limits.maxSamplerAnisotropy)
+                         : 1.0F;
 }
 
 }  // namespace
