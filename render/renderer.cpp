@@ -88,7 +88,7 @@ struct Renderer::State {
   std::deque<Unfinished> unfinished;
 
   void build(const Scene& source, const timeline::Player& player);
-  vkr::Buffer& readback(vkr::Buffer& buffer) const;
+  vkr::Buffer& readback(vkr::Buffer& buffer);
   void update(const timeline::ChangeSet& changes, const timeline::Player& player);
   void record_shadows(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report);
   void record_color(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report);
@@ -142,11 +142,10 @@ void Renderer::State::build(const Scene& source, const timeline::Player& player)
   ring.emplace(*device, kFramesInFlight);
 }
 
-vkr::Buffer& Renderer::State::readback(vkr::Buffer& buffer) const {
+vkr::Buffer& Renderer::State::readback(vkr::Buffer& buffer) {
   const std::uint64_t bytes = std::uint64_t{4} * options.size.x * options.size.y;
   if (buffer.bytes < bytes)
-    buffer = const_cast<vkr::Memory&>(*memory).buffer(bytes, vk::BufferUsageFlagBits::eTransferDst,
-                                                      vkr::MemoryUse::readback);
+    buffer = memory->buffer(bytes, vk::BufferUsageFlagBits::eTransferDst, vkr::MemoryUse::readback);
   return buffer;
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 Result<double> parse_moment(std::string_view text, double duration_s) {
   if (text.ends_with('%')) {
-    const Result<double> percent = parse_real(text.substr(0, text.size() - 1), 0.0, 100.0);
+    Result<double> percent = parse_real(text.substr(0, text.size() - 1), 0.0, 100.0);
     if (!percent) return percent;
     return *percent * 0.01 * duration_s;
   }
