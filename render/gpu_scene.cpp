@@ -325,7 +325,7 @@ std::uint64_t GpuScene::record_updates(vkr::Frame& frame, vkr::Barriers& barrier
   const std::uint64_t bytes = materials_at + dirty_materials_.size() * sizeof(MaterialRecord);
   std::byte* staging = frame.staging.reserve(memory_, bytes);
   std::memcpy(staging, &camera, sizeof(camera));
-  std::memcpy(staging + records_at, records.data(), records.size_bytes());
+  if (!records.empty()) std::memcpy(staging + records_at, records.data(), records.size_bytes());
   std::vector<vk::BufferCopy> material_copies;
   for (std::size_t i = 0; i < dirty_materials_.size(); ++i) {
     const std::uint64_t from = materials_at + i * sizeof(MaterialRecord);
