@@ -14,6 +14,7 @@
 #include <new>
 #include <system_error>
 
+#include "scene/temporary_files.h"
 #include "tools/output.h"
 
 namespace scenegen::tools {
@@ -441,6 +442,7 @@ int report_exception(const std::exception_ptr& exception) {
 int guarded_main(int argc, char** argv, int (*body)(std::span<const std::string>)) {
   (void)std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is a write error
   (void)std::signal(SIGXFSZ, SIG_IGN);  // so is a file that grows too large
+  remove_temporary_files_on_signals();
   std::set_terminate(on_terminate);
   try {
     const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);

@@ -140,8 +140,8 @@ class Options {
 /// Prints "error: ..." on stderr and gives the exit code that goes with its kind.
 int report_error(const Error& error);
 
-/// Runs a program's body: signals that would end the process become errors, exceptions one line and an exit
-/// code.
+/// Runs a program's body: signals that failed writes send become errors, exceptions one line and an exit
+/// code. Interrupted by the user, the process ends by that signal and leaves no part of a file behind.
 int guarded_main(int argc, char** argv, int (*body)(std::span<const std::string> arguments));
 
 }  // namespace scenegen::tools

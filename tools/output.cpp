@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "scene/gltf/write_files.h"
+
 namespace scenegen::tools {
 
 using nlohmann::ordered_json;
@@ -218,16 +220,12 @@ Result<void> write_stdout(std::string_view text) {
 
 Result<void> write_file(const std::string& path, std::string_view bytes) {
   if (path == "-") return write_stdout(bytes);
-  const bool direct = special_file(path);
-  const std::string place = direct ? path : path + ".part" + std::to_string(::getpid());
-  const int file = ::open(place.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (file < 0) return cannot_write(path, errno);
-  int error_number = write_all(file, bytes);
-  if (::close(file) != 0 && error_number == 0) error_number = errno;
-  if (!direct && error_number == 0 && std::rename(place.c_str(), path.c_str()) != 0) error_number = errno;
-  if (error_number == 0) return {};
-  if (!direct) (void)::unlink(place.c_str());
-  return cannot_write(path, error_number);
+  auto file = gltf::OutputFile::open(path);
+  if (!file) return forward_error(file);
+  if (const int error_number = write_all(file->descriptor(), bytes); error_number != 0)
+    return cannot_write(path, error_number);
+  if (auto closed = file->close(); !closed) return closed;
+  return file->commit();
 }
 
 Result<void> check_output_file(const std::string& path) {

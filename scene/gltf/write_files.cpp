@@ -11,18 +11,22 @@
 #include <filesystem>
 #include <utility>
 
+#include "scene/temporary_files.h"
+
 namespace scenegen::gltf {
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
     : shown_(std::move(other.shown_)),
       target_(std::move(other.target_)),
       temporary_(std::exchange(other.temporary_, {})),
+      slot_(std::exchange(other.slot_, -1)),
       descriptor_(std::exchange(other.descriptor_, -1)),
       owns_descriptor_(other.owns_descriptor_) {}
 
 OutputFile::~OutputFile() {
   if (descriptor_ >= 0 && owns_descriptor_) ::close(descriptor_);
   if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  forget_temporary_file(slot_);
 }
 
 tl::unexpected<Error> OutputFile::error(int code) const {
@@ -56,8 +60,10 @@ Result<OutputFile> OutputFile::open(const std::string& path) {
   for (int attempt = 0; file.descriptor_ < 0; ++attempt) {
     std::string temporary = file.target_ + ".tmp" + std::to_string(::getpid());
     if (attempt > 0) temporary += "." + std::to_string(attempt);
-    file.descriptor_ = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (file.descriptor_ >= 0) {
+    const TemporaryFile made = create_temporary_file(temporary);
+    if (made.descriptor >= 0) {
+      file.descriptor_ = made.descriptor;
+      file.slot_ = made.slot;
       file.temporary_ = std::move(temporary);
     } else if (errno != EEXIST || attempt == 100) {
       return file.error(errno);

@@ -9,7 +9,8 @@
 namespace scenegen::gltf {
 
 /// A file being written. A regular file is written beside its place (`path.tmp<pid>`) and renamed by
-/// commit(); without commit() it is removed. stdout ("-") and devices are written in place.
+/// commit(); without commit() it is removed, also when a signal ends the process
+/// (scene/temporary_files.h). stdout ("-") and devices are written in place.
 class OutputFile {
  public:
   [[nodiscard]] static Result<OutputFile> open(const std::string& path);
@@ -33,6 +34,7 @@ class OutputFile {
   std::string shown_;      // the path as the caller knows it
   std::string target_;     // symbolic links resolved
   std::string temporary_;  // empty: in place, or committed
+  int slot_ = -1;          // of the temporary file
   int descriptor_ = -1;
   bool owns_descriptor_ = true;
 };

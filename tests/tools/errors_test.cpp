@@ -1,6 +1,7 @@
 // Every kind of wrong call: one line, the right exit code, nothing left behind.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <csignal>
 
 #include "tests/tools/process.h"
 
@@ -216,6 +217,21 @@ TEST_CASE("what was there before stays when writing fails") {
   CHECK(result.code == kIo);
   CHECK(read_file(folder.file("town.glb")) == "before");
   CHECK(folder.entries() == std::vector<std::string>{"town.glb"});
+}
+
+TEST_CASE("a signal leaves no part of a file behind and ends the process as signals do") {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const TemporaryFolder folder;
+    write_file(folder.file("town.glb"), "before");
+    ProcessOptions options{.folder = folder.path()};
+    options.interrupt = signal;
+    options.interrupt_when = [&] { return folder.entries().size() > 1; };
+    const ProcessResult result =
+        run(SCENEGEN_PROGRAM, words("--grid 8x8 --layout nodes -o town.glb"), options);
+    CHECK(result.signal == signal);
+    CHECK(folder.entries() == std::vector<std::string>{"town.glb"});
+    CHECK(read_file(folder.file("town.glb")) == "before");
+  }
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && \

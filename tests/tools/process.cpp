@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -65,7 +66,14 @@ ProcessResult run(const std::string& program, const std::vector<std::string>& ar
   if (child < 0) throw std::runtime_error("fork failed");
   if (child == 0) become(std::move(argv), options, out, err);
   int status = 0;
-  while (::waitpid(child, &status, 0) < 0) {
+  bool ended = false;
+  while (options.interrupt != 0 && !ended) {
+    ended = ::waitpid(child, &status, WNOHANG) == child;
+    if (ended || !options.interrupt_when()) continue;
+    (void)::kill(child, options.interrupt);
+    break;
+  }
+  while (!ended && ::waitpid(child, &status, 0) < 0) {
   }
   ProcessResult result;
   if (WIFEXITED(status)) result.code = WEXITSTATUS(status);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,8 @@ struct ProcessOptions {
   bool stdout_closed_pipe = false;                      ///< stdout is a pipe that nobody reads
   std::optional<std::uint64_t> most_file_bytes = {};    ///< RLIMIT_FSIZE: a full disk
   std::optional<std::uint64_t> most_memory_bytes = {};  ///< RLIMIT_AS
+  int interrupt = 0;                                    ///< signal to send as soon as `interrupt_when` holds
+  std::function<bool()> interrupt_when = {};
 };
 
 struct ProcessResult {
