@@ -80,6 +80,7 @@ GpuScene::GpuScene(const vkr::Device& device, vkr::Memory& memory, const vkr::Pi
   upload_geometry(scene);
   for (const Material& material : scene.materials) material_records_.push_back(material_record(material));
   material_records_.push_back(material_record(Material{}));
+  check_range("materials", material_records_.size(), sizeof(MaterialRecord));
   materials_ =
       memory_.buffer(material_records_.size() * sizeof(MaterialRecord),
                      BufferUsage::eStorageBuffer | BufferUsage::eTransferDst, vkr::MemoryUse::device);
@@ -95,6 +96,14 @@ GpuScene::GpuScene(const vkr::Device& device, vkr::Memory& memory, const vkr::Pi
   pool_ = vk::raii::DescriptorPool(device_.device, vk::DescriptorPoolCreateInfo({}, 1 + set_count, sizes));
   make_frame_set(pipelines);
   make_texture_sets(pipelines, scene, sets);
+}
+
+void GpuScene::check_range(const std::string& what, std::uint64_t count, std::uint64_t bytes_each) const {
+  const std::uint64_t most = device_.properties.limits.maxStorageBufferRange / bytes_each;
+  if (count <= most) return;
+  throw LimitError("the scene has " + std::to_string(count) + " " + what + ", this device takes " +
+                   std::to_string(most) +
+                   " (maxStorageBufferRange); a smaller scene or another --device helps");
 }
 
 void GpuScene::upload_bytes(const vkr::Buffer& target, std::span<const std::byte> bytes) {
@@ -125,7 +134,7 @@ void GpuScene::upload_geometry(const Scene& scene) {
     indices.insert(indices.end(), drawn.indices.begin(), drawn.indices.end());
     ranges_.push_back(range);
     if (positions.size() > 0x7FFFFFFFU || indices.size() > 0xFFFFFFFFU)
-      throw vk::OutOfDeviceMemoryError("more than 2^31 vertices or 2^32 indices");
+      throw LimitError("the scene has more than 2^31 vertices or 2^32 indices; a smaller scene helps");
   }
   const auto make = [&](auto& data, vk::BufferUsageFlags usage) {
     vkr::Buffer buffer = memory_.buffer(data.size() * sizeof(data[0]), usage | BufferUsage::eTransferDst,
@@ -262,11 +271,7 @@ void GpuScene::make_frame_set(const vkr::Pipelines& pipelines) {
 
 void GpuScene::upload_records(std::span<const ObjectRecord> records) {
   const std::uint64_t bytes = std::max<std::size_t>(records.size(), 1) * sizeof(ObjectRecord);
-  if (bytes > device_.properties.limits.maxStorageBufferRange)
-    throw vk::OutOfDeviceMemoryError("an object array of " + std::to_string(bytes >> 20) +
-                                     " MiB is above the device's maxStorageBufferRange of " +
-                                     std::to_string(device_.properties.limits.maxStorageBufferRange >> 20) +
-                                     " MiB");
+  check_range("slots (object x primitive)", records.size(), sizeof(ObjectRecord));
   records_ =
       memory_.buffer(bytes, BufferUsage::eStorageBuffer | BufferUsage::eTransferDst, vkr::MemoryUse::device);
   upload_bytes(records_, std::as_bytes(records));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
@@ -15,6 +16,11 @@
 #include "render/vk/pipelines.h"
 
 namespace scenegen::render {
+
+/// The scene is above a limit of the device; the message says which and what helps.
+class LimitError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 /// Which textures a material binds; materials with equal sets share one descriptor set.
 struct TextureSets {
@@ -31,7 +37,7 @@ struct TextureSets {
 /// frame's staging memory.
 class GpuScene {
  public:
-  /// Uploads everything. Throws vk::SystemError.
+  /// Uploads everything. Throws vk::SystemError and LimitError.
   GpuScene(const vkr::Device& device, vkr::Memory& memory, const vkr::Pipelines& pipelines,
            const Scene& scene, const TextureSets& sets);
 
@@ -56,6 +62,8 @@ class GpuScene {
  private:
   void upload_geometry(const Scene& scene);
   void upload_textures(const Scene& scene, const TextureSets& sets);
+  /// Throws LimitError when an array is above the device's storage range.
+  void check_range(const std::string& what, std::uint64_t count, std::uint64_t bytes_each) const;
   void upload_bytes(const vkr::Buffer& target, std::span<const std::byte> bytes);
   vkr::Image upload_image(const DecodedImage& image, vk::Format format);
   void record_mipmaps(const vk::raii::CommandBuffer& commands, const vkr::Image& image) const;

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cstring>
+#include <new>
 #include <vector>
 
 #define STBI_WRITE_NO_STDIO
@@ -18,6 +19,19 @@ namespace {
 
 void append(void* out, void* bytes, int size) {
   static_cast<std::string*>(out)->append(static_cast<const char*>(bytes), static_cast<std::size_t>(size));
+}
+
+/// The picture is opaque; three channels are a quarter smaller.
+std::vector<std::uint8_t> without_alpha(std::span<const std::uint8_t> rgba) {
+  std::vector<std::uint8_t> rgb;
+  rgb.reserve(rgba.size() / 4 * 3);
+  for (std::size_t i = 0; i < rgba.size(); i += 4) rgb.insert(rgb.end(), &rgba[i], &rgba[i] + 3);
+  return rgb;
+}
+
+/// stb gives 0 only when it gets no memory.
+void check(int written) {
+  if (written == 0) throw std::bad_alloc();
 }
 
 }  // namespace
@@ -38,24 +52,15 @@ std::string encode_picture(PictureFormat format, glm::uvec2 size, std::span<cons
   const int w = static_cast<int>(size.x);
   const int h = static_cast<int>(size.y);
   switch (format) {
-    case PictureFormat::png: {
-      // The picture is opaque; three channels are a quarter smaller.
-      std::vector<std::uint8_t> rgb;
-      rgb.reserve(rgba.size() / 4 * 3);
-      for (std::size_t i = 0; i < rgba.size(); i += 4) rgb.insert(rgb.end(), &rgba[i], &rgba[i] + 3);
-      stbi_write_png_to_func(append, &out, w, h, 3, rgb.data(), 3 * w);
+    case PictureFormat::png:
+      check(stbi_write_png_to_func(append, &out, w, h, 3, without_alpha(rgba).data(), 3 * w));
       break;
-    }
     case PictureFormat::jpg:
-      stbi_write_jpg_to_func(append, &out, w, h, 4, rgba.data(), 95);
+      check(stbi_write_jpg_to_func(append, &out, w, h, 4, rgba.data(), 95));
       break;
-    case PictureFormat::bmp: {
-      std::vector<std::uint8_t> rgb;
-      rgb.reserve(rgba.size() / 4 * 3);
-      for (std::size_t i = 0; i < rgba.size(); i += 4) rgb.insert(rgb.end(), &rgba[i], &rgba[i] + 3);
-      stbi_write_bmp_to_func(append, &out, w, h, 3, rgb.data());
+    case PictureFormat::bmp:
+      check(stbi_write_bmp_to_func(append, &out, w, h, 3, without_alpha(rgba).data()));
       break;
-    }
   }
   return out;
 }
@@ -67,8 +72,8 @@ std::string encode_ids(glm::uvec2 size, std::span<const std::uint32_t> ids) {
     for (unsigned shift = 0; shift < 32; shift += 8) rgba.push_back(static_cast<std::uint8_t>(id >> shift));
   }
   std::string out;
-  stbi_write_png_to_func(append, &out, static_cast<int>(size.x), static_cast<int>(size.y), 4, rgba.data(),
-                         static_cast<int>(4 * size.x));
+  check(stbi_write_png_to_func(append, &out, static_cast<int>(size.x), static_cast<int>(size.y), 4,
+                               rgba.data(), static_cast<int>(4 * size.x)));
   return out;
 }
 

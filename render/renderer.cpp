@@ -107,6 +107,11 @@ Result<void> Renderer::State::guarded(const Body& body) const {
     return {};
   } catch (const vk::DeviceLostError& e) {
     abort_lost_device(e, device->info);
+  } catch (const LimitError& e) {
+    return fail(ErrorKind::no_device, "device '" + device->info.name + "'", e.what());
+  } catch (const vk::OutOfDeviceMemoryError& e) {
+    return fail(ErrorKind::no_device, "device '" + device->info.name + "'",
+                std::string(e.what()) + "; smaller pictures, fewer samples or a smaller scene need less");
   } catch (const vk::SystemError& e) {
     return fail(ErrorKind::no_device, "device '" + device->info.name + "'", e.what());
   }
@@ -161,8 +166,8 @@ void Renderer::State::record_shadows(vkr::Frame& frame, vkr::Barriers& barriers,
   if (options.shadows) {
     DrawRecorder recorder(frame.commands, *pipelines, *gpu, *scene, vkr::PassKind::shadow);
     record_all_solid(recorder, *scene);
-    report.draws += recorder.draws();
-    report.triangles += recorder.triangles();
+    report.shadow_draws = recorder.draws();
+    report.shadow_triangles = recorder.triangles();
   }
   frame.commands.endRenderPass();
   barriers.image(shadow->depth, vkr::Use::sampled).flush(frame.commands);
@@ -179,8 +184,8 @@ void Renderer::State::record_color(vkr::Frame& frame, vkr::Barriers& barriers, F
   strategy->record(blended, DrawPart::blended);
   frame.commands.endRenderPass();
   record_readback(frame.commands, color->result(), readback(frame.color), barriers);
-  report.draws += solid.draws() + blended.draws() + 1;
-  report.triangles += solid.triangles() + blended.triangles();
+  report.draws = solid.draws() + blended.draws();
+  report.triangles = solid.triangles() + blended.triangles();
 }
 
 void Renderer::State::record_ids(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report) {
@@ -190,8 +195,8 @@ void Renderer::State::record_ids(vkr::Frame& frame, vkr::Barriers& barriers, Fra
   frame.commands.endRenderPass();
   if (options.outputs.ids) record_readback(frame.commands, ids->color, readback(frame.ids), barriers);
   if (options.outputs.depth) record_readback(frame.commands, ids->depth, readback(frame.depth), barriers);
-  report.draws += recorder.draws();
-  report.triangles += recorder.triangles();
+  report.ids_draws = recorder.draws();
+  report.ids_triangles = recorder.triangles();
 }
 
 void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline::Player& player,

@@ -40,8 +40,12 @@ struct FrameReport {
   std::uint64_t visible = 0;    ///< objects visible by timeline
   std::uint64_t tested = 0;     ///< boxes tested against the frustum
   std::uint64_t drawn = 0;      ///< slots (object x primitive) that the strategy drew in the colour pass
-  std::uint64_t draws = 0;      ///< draw commands of all passes
-  std::uint64_t triangles = 0;  ///< of all passes
+  std::uint64_t draws = 0;      ///< draw commands of the colour pass, without the sky
+  std::uint64_t triangles = 0;  ///< of the colour pass, without the sky
+  std::uint64_t shadow_draws = 0;
+  std::uint64_t shadow_triangles = 0;
+  std::uint64_t ids_draws = 0;  ///< of the pass of ids and depth
+  std::uint64_t ids_triangles = 0;
   std::uint64_t uploaded_bytes = 0;
   double update_ms = 0;
   double plan_ms = 0;  ///< culling and sorting

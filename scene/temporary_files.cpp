@@ -90,7 +90,7 @@ void remove_temporary_files_on_signals() {
     action = {};
     action.sa_handler = remove_and_end;
     action.sa_mask = ending_signals();
-    action.sa_flags = SA_RESETHAND;
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
     (void)::sigaction(signal, &action, nullptr);
   }
 }

@@ -404,12 +404,15 @@ std::string Options::help(bool colored) const {
   return out;
 }
 
-int report_error(const Error& error) {
-  std::string line = error.str();
-  // Names of files are other people's text: no line breaks, no escape sequences.
+std::string printable(std::string text) {
   std::replace_if(
-      line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; },
+      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; },
       '?');
+  return text;
+}
+
+int report_error(const Error& error) {
+  const std::string line = printable(error.str());
   std::fprintf(stderr, colored(2) ? "\x1b[1;31merror:\x1b[0m %s\n" : "error: %s\n", line.c_str());
   return static_cast<int>(error.kind);
 }

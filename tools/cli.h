@@ -137,6 +137,9 @@ class Options {
   std::unique_ptr<State> state_;
 };
 
+/// Other people's text for a terminal: line breaks and escape characters become question marks.
+[[nodiscard]] std::string printable(std::string text);
+
 /// Prints "error: ..." on stderr and gives the exit code that goes with its kind.
 int report_error(const Error& error);
 

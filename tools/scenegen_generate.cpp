@@ -185,7 +185,8 @@ Report report(const GenerateRequest& r, const Made& made, const std::vector<std:
 Result<void> say(const GenerateRequest& r, const Made& made, const std::vector<std::string>& arguments) {
   const Report facts = report(r, made, arguments);
   if (!r.quiet) {
-    for (const std::string& note : made.notes) (void)std::fprintf(stderr, "note: %s\n", note.c_str());
+    for (const std::string& note : made.notes)
+      (void)std::fprintf(stderr, "note: %s\n", printable(note).c_str());
   }
   if (!r.report.empty()) {
     if (auto written = write_file(r.report, pretty(facts.json())); !written) return written;

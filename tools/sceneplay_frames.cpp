@@ -170,6 +170,10 @@ ordered_json frame_json(const render::FrameReport& r, double seek_ms, double enc
           {"drawn", r.drawn},
           {"draws", r.draws},
           {"triangles", r.triangles},
+          {"shadowDraws", r.shadow_draws},
+          {"shadowTriangles", r.shadow_triangles},
+          {"idsDraws", r.ids_draws},
+          {"idsTriangles", r.ids_triangles},
           {"uploadedBytes", r.uploaded_bytes},
           {"stagesMs",
            {{"seek", seek_ms},
@@ -309,7 +313,7 @@ Result<void> draw(const FramesRequest& request, const Options& options) {
   if (auto made = make_folder(request.folder); !made) return made;
   if (!request.quiet) {
     for (const std::string& warning : renderer->warnings())
-      std::fprintf(stderr, "warning: %s\n", warning.c_str());
+      (void)std::fprintf(stderr, "warning: %s\n", printable(warning).c_str());
   }
   const std::uint64_t objects = scene.objects.size();
   *read = {};  // the renderer and the player hold what they need

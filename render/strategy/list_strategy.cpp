@@ -9,7 +9,7 @@ namespace scenegen::render {
 PlanCounters ListStrategy::finish_plan(const View& view) {
   if (options_.reversed) std::reverse(list_.solid.begin(), list_.solid.end());
   sort_back_to_front(scene_, view, list_.blended);
-  return {list_.tested, list_.solid.size() + list_.blended.size(), 0};
+  return {list_.tested, list_.solid.size() + list_.blended.size()};
 }
 
 void ListStrategy::record(DrawRecorder& recorder, DrawPart part) {

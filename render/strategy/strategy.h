@@ -22,9 +22,8 @@ struct StrategyOptions {
 
 /// What planning found, for the frame report.
 struct PlanCounters {
-  std::uint64_t tested = 0;     ///< boxes tested against the frustum
-  std::uint64_t drawn = 0;      ///< slots in the list
-  std::uint64_t triangles = 0;  ///< triangles in the list
+  std::uint64_t tested = 0;  ///< boxes tested against the frustum
+  std::uint64_t drawn = 0;   ///< slots in the list
 };
 
 /// Knows neither files nor tracks: it is fed ChangeSets (after DrawScene took them), plans on the processor,

@@ -83,9 +83,10 @@ TEST_CASE("the report counts what was done") {
   CHECK(frames[1].report.changed == 44);
   CHECK(frames[1].report.drawn == 48);
   CHECK(frames[1].report.tested == 48);
-  // Colour: 48 boxes and the sky; ids: the 46 solid ones.
-  CHECK(frames[1].report.draws == 48 + 1 + 46);
-  CHECK(frames[1].report.triangles == 12 * (48 + 46));
+  CHECK(frames[1].report.draws == 48);
+  CHECK(frames[1].report.triangles == 12 * 48);
+  CHECK(frames[1].report.ids_draws == 46);  // the solid ones
+  CHECK(frames[1].report.ids_triangles == 12 * 46);
   CHECK(frames[1].report.gpu_ms > 0);
 }
 
