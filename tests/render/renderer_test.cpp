@@ -285,7 +285,7 @@ TEST_CASE("moving, recoloured and swapped objects are drawn as they are now") {
   lens.far_m = 20;
   const View view = make_view(look_at({0, 0, 10}, {0, 0, 0}), lens, 3.0F);
   const auto frames = render::test::render(scene, {0.0, 1.0, 0.0}, view, options);
-  for (const std::size_t i : {0, 2}) {
+  for (const std::size_t i : {0U, 2U}) {
     CHECK(pixel(frames[i], options.size, 20, 20) == glm::ivec3(255, 0, 0));
     CHECK(pixel(frames[i], options.size, 60, 20) == glm::ivec3(255, 0, 0));
     CHECK(frames[i].ids[120 * 20 + 100] == 0xFFFFFFFF);
