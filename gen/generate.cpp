@@ -53,7 +53,7 @@ Result<void> choose_extras(const TownOptions& o, TownRecipe& recipe, std::vector
 }
 
 /// Layouts of brick buildings; refuses what would exceed the limit before it is built.
-Result<void> lay_out(const TownOptions& o, TownRecipe& recipe) {
+Result<void> lay_out(const TownOptions& o, TownRecipe& recipe, std::vector<std::string>& notes) {
   const std::uint64_t buildings = std::uint64_t{o.grid.x} * o.grid.y;
   const std::uint64_t most_parts = limits::kMaxObjects / buildings;
   std::vector<Roof> roofs{recipe.plan.roof};
@@ -69,6 +69,8 @@ Result<void> lay_out(const TownOptions& o, TownRecipe& recipe) {
     what += ": a building has more than " + std::to_string(most_parts);
     return fail(ErrorKind::usage, "--grid", what + "; take fewer buildings");
   }
+  if (o.windows && recipe.layouts.front().windows == 0)
+    notes.emplace_back("no window fits between the walls: the buildings have none");
   return {};
 }
 
@@ -109,7 +111,7 @@ Result<TownRecipe> make_recipe(const TownOptions& o, std::vector<std::string>& n
       return fail(ErrorKind::usage, "--grid",
                   "more than " + std::to_string(limits::kMaxObjects) + " objects; take fewer buildings");
     }
-  } else if (auto r = lay_out(o, recipe); !r) {
+  } else if (auto r = lay_out(o, recipe, notes); !r) {
     return forward_error(r);
   }
   if (auto r = check_count(predict(recipe), "--extras"); !r) return forward_error(r);

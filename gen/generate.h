@@ -34,7 +34,6 @@ struct TownOptions {
   Roof roof = Roof::mixed;
   bool ground = true;
   std::uint64_t seed = 1;
-  unsigned threads = 1;
 };
 
 struct Generated {
@@ -54,7 +53,7 @@ struct Prediction {
 
 /// Test sets 5 … 48 of D's table 1; counts equal reference/test_sets.csv exactly. Sets 1 … 4 are private
 /// models: an error.
-[[nodiscard]] Result<Generated> generate_test_set(int set, std::uint64_t seed, unsigned threads);
+[[nodiscard]] Result<Generated> generate_test_set(int set, std::uint64_t seed);
 [[nodiscard]] Result<Prediction> predict_test_set(int set);
 
 }  // namespace scenegen::gen

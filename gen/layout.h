@@ -64,7 +64,8 @@ struct Layout {
   std::vector<Part> parts;
   std::vector<Room> rooms;
   std::array<Slope, 2> slopes;  ///< left, right
-  glm::ivec3 size_mm{0};        ///< outer walls along x and y, and the highest point
+  std::uint64_t windows = 0;
+  glm::ivec3 size_mm{0};  ///< outer walls along x and y, and the highest point
 };
 
 /// Takes the parts of a layout, or only counts them; past `most_parts` it only says so, and memory stays
@@ -82,6 +83,9 @@ class LayoutSink {
   }
   void add_room(const GridBox& box) {
     if (mode_ == Mode::keep) layout_.rooms.push_back({box, storey_});
+  }
+  void add_window() {
+    if (mode_ == Mode::keep) ++layout_.windows;
   }
   [[nodiscard]] std::uint64_t count() const { return count_; }
   [[nodiscard]] bool overflowed() const { return count_ > most_parts_; }

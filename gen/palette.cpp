@@ -104,15 +104,11 @@ MeshId Palette::box(Look look) {
   return id;
 }
 
-MeshId Palette::ground(Look look, const glm::dvec2& size_m, double repeat_m) {
-  const MeshId id = mesh(box_, look, paint_of(look).name);
+MeshId Palette::ground(Look look, const glm::dvec3& size_m, double repeat_m) {
   if (!noise_.valid()) noise_ = texture(noise_image(), kRepeat);
-  TextureUse& use = scene_.materials[material(look).value].base_color_texture;
-  use.texture = noise_;
-  // The top shows the atlas's bed region, half the texture wide and high.
-  const glm::dvec2 bed(kBed.hi - kBed.lo);
-  use.uv_scale = glm::vec2(size_m / repeat_m / bed);
-  return id;
+  scene_.materials[material(look).value].base_color_texture.texture = noise_;
+  scene_.geometries.push_back(tiled_unit_box(size_m, repeat_m));
+  return mesh(GeometryId(scene_.geometries.size() - 1), look, paint_of(look).name);
 }
 
 }  // namespace scenegen::gen

@@ -39,8 +39,9 @@ class Palette {
   /// Mesh of the unit box (or of `geometry`) in a look.
   MeshId box(Look look);
   MeshId mesh(GeometryId geometry, Look look, const char* name);
-  /// Ground and streets: the noise texture repeats every `repeat_m` over a top of `size_m`.
-  MeshId ground(Look look, const glm::dvec2& size_m, double repeat_m);
+  /// A unit box of its own for ground and streets: scaled to `size_m` the noise texture repeats every
+  /// `repeat_m`. The tiling is in the texture coordinates: not every viewer knows KHR_texture_transform.
+  MeshId ground(Look look, const glm::dvec3& size_m, double repeat_m);
 
  private:
   MaterialId material(Look look);

@@ -42,7 +42,7 @@ struct BuildingPlan {
 /// Errors are usage errors that name the option. `roof` of the result is gabled, flat or none.
 [[nodiscard]] Result<BuildingPlan> plan_building(const TownOptions& options, std::vector<std::string>& notes);
 
-/// Checks grid, spacing, extras, seed and threads.
+/// Checks grid, spacing, extras and seed.
 [[nodiscard]] Result<void> check_town(const TownOptions& options);
 
 /// Refuses a town wider than 32.768 km: beyond +-16.384 km float32 no longer resolves 1 mm.

@@ -54,6 +54,18 @@ Geometry unit_box_unindexed(bool whole_faces) {
   return g;
 }
 
+Geometry tiled_unit_box(const glm::dvec3& size_m, double repeat_m) {
+  Geometry g = unit_box();
+  const glm::dvec3 repeats = size_m / repeat_m;
+  for (std::size_t i = 0; i < g.positions_m.size(); ++i) {
+    const glm::dvec3 right(g.tangents[i]);
+    const glm::dvec3 up = glm::cross(glm::dvec3(g.normals[i]), right);
+    const glm::dvec3 at = glm::dvec3(g.positions_m[i]) * repeats;
+    g.texcoords[0][i] = glm::vec2(glm::dvec2(glm::dot(at, right), -glm::dot(at, up)));
+  }
+  return g;
+}
+
 SineCosine of_turn(std::uint64_t k, std::uint64_t n) {
   // Eighths of a turn exactly, then at most pi/4 by the series.
   k %= n;

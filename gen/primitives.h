@@ -21,6 +21,9 @@ constexpr AtlasRegion kBed{{0.0F, 0.5F}, {0.5F, 1.0F}};
 /// The same as 36 vertices drawn in order; every face shows the whole texture when `whole_faces`.
 [[nodiscard]] Geometry unit_box_unindexed(bool whole_faces);
 
+/// unit_box() with a texture that repeats every `repeat_m` on each face once the box is scaled to `size_m`.
+[[nodiscard]] Geometry tiled_unit_box(const glm::dvec3& size_m, double repeat_m);
+
 /// Sphere of diameter 1 of `slices` meridians and `stacks` >= 2 bands, poles on y; 6 * slices * (stacks - 1)
 /// vertices drawn in order, with normals and texture coordinates.
 [[nodiscard]] Geometry uv_sphere(std::uint32_t slices, std::uint32_t stacks);

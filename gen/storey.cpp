@@ -94,10 +94,12 @@ void build_outer_walls(const BuildingPlan& plan, const Division& division, int f
     const JoinerySizes sizes = joinery_sizes(plan);
     const Interval step{plan.pavement_mm, plan.pavement_mm + std::max(1, plan.slab_mm / 2)};
     for (const Opening& opening : wall.openings) {
-      if (opening.kind == OpeningKind::door)
+      if (opening.kind == OpeningKind::door) {
         fit_door(wall, opening, sizes, step, sink);
-      else
+      } else {
         fit_window(wall, opening, sizes, sink);
+        sink.add_window();
+      }
     }
   }
 }

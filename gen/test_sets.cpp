@@ -167,7 +167,7 @@ Generated textured_boxes(std::uint32_t count, std::uint64_t seed) {
 
 }  // namespace
 
-Result<Generated> generate_test_set(int set, std::uint64_t seed, unsigned /*threads*/) {
+Result<Generated> generate_test_set(int set, std::uint64_t seed) {
   if (auto r = check_set(set); !r) return forward_error(r);
   const auto of = [&](int first) { return static_cast<std::size_t>(set - first); };
   if (in(set, 5, 13)) return random_boxes(kBoxes[of(5)], seed);

@@ -190,10 +190,11 @@ class TownBuilder {
 
   void add_ground_box(const char* name, Look look, const glm::dvec2& half_m, double top_m,
                       double thickness_m) {
-    const MeshId mesh = palette_.ground(look, half_m * 2.0, 6.0);
+    const glm::dvec3 size_m(half_m.x * 2, thickness_m, half_m.y * 2);
+    const MeshId mesh = palette_.ground(look, size_m, 6.0);
     Transform t;
     t.translation_m = {0, static_cast<float>(top_m - thickness_m * 0.5), 0};
-    t.scale = glm::vec3(glm::dvec3(half_m.x * 2, thickness_m, half_m.y * 2));
+    t.scale = glm::vec3(size_m);
     scene_.objects.add(name, mesh, t);
     out_.exempt.push_back(1);
   }

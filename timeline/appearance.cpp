@@ -253,6 +253,34 @@ std::vector<std::uint32_t> own_ranks(std::span<const Box> bounds, const CellGrid
   return rank;
 }
 
+/// The curve that a scene's times say they follow.
+struct GivenCurve {
+  CurveKind kind = CurveKind::hilbert;
+  AxisOrder order;
+};
+
+Result<GivenCurve> given_curve(const SceneInfo& scene_info) {
+  const auto bad = [](const std::string& member, std::string what) {
+    return fail(ErrorKind::bad_input, "appearance" + member, std::move(what));
+  };
+  if (!scene_info.appearance) return bad("", "the scene does not say how its times were given");
+  const AppearanceInfo& info = *scene_info.appearance;
+  const Result<CurveKind> curve = parse_curve(info.curve);
+  if (!curve) return bad(".curve", curve.error().what);
+  if (info.curve_variant != variant(*curve)) {
+    return bad(".curveVariant", "'" + info.curve_variant.substr(0, 40) + "' is not known; '" +
+                                    std::string(variant(*curve)) + "' is");
+  }
+  const Result<AxisOrder> order = parse_axis_order(info.order);
+  if (!order) return bad(".order", order.error().what);
+  const Result<std::uint64_t> cells = checked_cell_count(info.cells);
+  if (!cells) return bad(".cells", cells.error().what);
+  if (!(info.interval_s > 0.0 && info.interval_s * static_cast<double>(*cells) <= kLongest)) {
+    return bad(".interval", text_of(info.interval_s) + " s: not above 0, or the last time is no float32");
+  }
+  return GivenCurve{*curve, *order};
+}
+
 }  // namespace
 
 Result<AppearanceInfo> assign_appearance(Scene& scene, const AppearanceOptions& options,
@@ -298,29 +326,19 @@ Result<AppearanceInfo> assign_appearance(Scene& scene, const AppearanceOptions& 
 }
 
 Result<double> measure_coherence(const Scene& scene, unsigned threads) {
-  const auto bad = [](const std::string& member, std::string what) {
-    return fail(ErrorKind::bad_input, "appearance" + member, std::move(what));
-  };
-  if (!scene.info.appearance) return bad("", "the scene does not say how its times were given");
+  const Result<GivenCurve> given = given_curve(scene.info);
+  if (!given) return tl::unexpected<Error>(given.error());
   const AppearanceInfo& info = *scene.info.appearance;
-  const Result<CurveKind> curve = parse_curve(info.curve);
-  if (!curve) return bad(".curve", curve.error().what);
-  if (info.curve_variant != variant(*curve)) {
-    return bad(".curveVariant", "'" + info.curve_variant.substr(0, 40) + "' is not known; '" +
-                                    std::string(variant(*curve)) + "' is");
-  }
-  const Result<AxisOrder> order = parse_axis_order(info.order);
-  if (!order) return bad(".order", order.error().what);
-  const Result<std::uint64_t> cells = checked_cell_count(info.cells);
-  if (!cells) return bad(".cells", cells.error().what);
-  if (!(info.interval_s > 0.0 && info.interval_s * static_cast<double>(*cells) <= kLongest)) {
-    return bad(".interval", text_of(info.interval_s) + " s: not above 0, or the last time is no float32");
-  }
-
   const std::vector<std::uint32_t> own =
       own_ranks(placed_bounds(scene, threads), CellGrid(info.cells, info.grid_z_up_m),
-                cell_ranks(*curve, info.cells, *order), threads);
+                cell_ranks(given->kind, info.cells, given->order), threads);
   return share_in_order(scene, own, info.interval_s);
+}
+
+Result<std::uint64_t> curve_jumps(const SceneInfo& info) {
+  const Result<GivenCurve> given = given_curve(info);
+  if (!given) return tl::unexpected<Error>(given.error());
+  return locality(given->kind, info.appearance->cells, given->order, 1).jumps;
 }
 
 }  // namespace scenegen::timeline

@@ -33,4 +33,8 @@ struct AppearanceOptions {
 /// tracks and info.appearance alone.
 [[nodiscard]] Result<double> measure_coherence(const Scene& scene, unsigned threads = 1);
 
+/// Steps of info.appearance's curve on its own grid between cells that share no face: none for Hilbert's on a
+/// cube of side 2^n, often some on a grid that crops it.
+[[nodiscard]] Result<std::uint64_t> curve_jumps(const SceneInfo& info);
+
 }  // namespace scenegen::timeline

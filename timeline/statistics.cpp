@@ -52,6 +52,7 @@ Statistics statistics(const Scene& scene, unsigned threads) {
   if (out.moments > 0) out.mean_events = static_cast<double>(out.events) / static_cast<double>(out.moments);
   if (scene.info.appearance) {
     out.locality_cells = scene.info.appearance->locality_cells;
+    if (const Result<std::uint64_t> jumps = curve_jumps(scene.info)) out.jumps = *jumps;
     if (const Result<double> measured = measure_coherence(scene, threads)) out.coherence_measured = *measured;
   }
   return out;

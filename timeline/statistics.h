@@ -27,6 +27,7 @@ struct Statistics {
   std::optional<double>
       coherence_measured;  ///< again, from the tracks; none without (usable) info.appearance
   std::optional<double> locality_cells;
+  std::optional<std::uint64_t> jumps;  ///< curve_jumps(); none without (usable) info.appearance
 };
 [[nodiscard]] Statistics statistics(const Scene& scene, unsigned threads = 1);
 

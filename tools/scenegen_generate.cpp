@@ -70,7 +70,7 @@ Result<gen::Prediction> predict(const GenerateRequest& r) {
 
 Result<gen::Generated> generate(const GenerateRequest& r) {
   if (r.test_set == 0) return gen::generate_town(r.town);
-  return gen::generate_test_set(static_cast<int>(r.test_set), r.seed, r.town.threads);
+  return gen::generate_test_set(static_cast<int>(r.test_set), r.seed);
 }
 
 Result<Made> make(const GenerateRequest& r, const std::vector<std::string>& arguments) {
@@ -104,7 +104,7 @@ Result<Made> make(const GenerateRequest& r, const std::vector<std::string>& argu
   made.file = std::move(*file);
   made.notes.insert(made.notes.end(), made.file.notes.begin(), made.file.notes.end());
   if (!r.dry_run && (r.format != Format::table || !r.report.empty())) {
-    const timeline::Statistics counted = timeline::statistics(scene, r.town.threads);
+    const timeline::Statistics counted = timeline::statistics(scene, r.appearance.threads);
     made.counts = {counted.objects, counted.vertices, counted.triangles};
   }
   made.seconds = stopwatch.seconds();

@@ -105,6 +105,10 @@ void add_appearance_section(Report& out, const SceneInfo& info, const timeline::
   }
   add_count(out, "timed", "objects timed", a.timed_objects);
   add_count(out, "displaced", "objects displaced", a.displaced_objects);
+  if (s.jumps) {
+    out.add({"jumps", "jumps", *s.jumps,
+             human_count(*s.jumps) + " (steps of the curve between cells that share no face)"});
+  }
   if (s.locality_cells) {
     out.add({"locality", "locality", *s.locality_cells,
              human_real(*s.locality_cells, 1) + " (mean side of the box round 512 neighbours on the curve)"});

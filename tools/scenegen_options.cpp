@@ -212,7 +212,6 @@ void settle(GenerateRequest& r) {
   const unsigned threads = r.threads != 0 ? r.threads : std::min(processors, limits::kMaxThreads);
   r.town.seed = r.seed;
   r.appearance.seed = r.seed;
-  r.town.threads = threads;
   r.appearance.threads = threads;
   r.file.threads = threads;
   if (r.curve) r.appearance.curve = *r.curve;

@@ -188,7 +188,10 @@ Result<WriteReport> write_gltf(const Document& document, const std::string& path
     if (Result<void> closed = binary_file->close(); !closed) return forward_error(closed);
     if (Result<void> placed = binary_file->commit(); !placed) return forward_error(placed);
   }
-  if (Result<void> placed = json_file->commit(); !placed) return forward_error(placed);
+  if (Result<void> placed = json_file->commit(); !placed) {
+    if (binary_file) placed.error().what += "; " + binary + " is already the new one";
+    return forward_error(placed);
+  }
   WriteReport report = document.report();
   report.json_bytes = sink.total();
   report.bytes = sink.total() + document.buffer_bytes();

@@ -105,7 +105,7 @@ TEST_CASE("the default town is what the documents say") {
   CHECK(g.notes.empty());
   CHECK(g.scene.objects.size() > 30'000);
   CHECK(g.scene.objects.size() < 45'000);
-  CHECK(g.scene.geometries.size() == 1);
+  CHECK(g.scene.geometries.size() == 3);  // bricks and all else, grass, streets
   std::size_t brick_materials = 0, blended = 0;
   for (const Material& m : g.scene.materials) {
     brick_materials += m.name.starts_with("brick");
@@ -178,12 +178,11 @@ TEST_CASE("extra objects stand in rooms and overlap nothing") {
   }
 }
 
-TEST_CASE("the seed changes tints and extras, threads change nothing") {
+TEST_CASE("the seed changes tints and extras, a second run nothing") {
   TownOptions options;
   options.grid = {2, 2};
   options.extras_per_floor = 5;
   const Generated a = *generate_town(options);
-  options.threads = 8;
   const Generated b = *generate_town(options);
   options.seed = 2;
   const Generated c = *generate_town(options);
@@ -244,6 +243,47 @@ TEST_CASE("small and odd buildings work, and say what they left out") {
   const Generated g = *generate_town(options);
   REQUIRE(g.notes.size() == 1);
   CHECK(g.notes[0].find("windows are 1 m x 1.17 m") != std::string::npos);
+}
+
+TEST_CASE("windows that fit nowhere are noted") {
+  const auto says_so = [](const TownOptions& options) {
+    const Generated g = *generate_town(options);
+    return std::count(g.notes.begin(), g.notes.end(),
+                      "no window fits between the walls: the buildings have none") == 1;
+  };
+  TownOptions options;
+  CHECK_FALSE(says_so(options));
+  options.building_bricks = {2, 2};
+  CHECK(says_so(options));
+  options.windows = false;
+  CHECK_FALSE(says_so(options));
+}
+
+TEST_CASE("the ground's texture repeats every 6 m without a texture transform") {
+  TownOptions options;
+  options.grid = {3, 2};
+  const Generated g = *generate_town(options);
+  for (const Material& m : g.scene.materials) {
+    CHECK(m.base_color_texture.uv_scale == glm::vec2(1));
+    CHECK(m.base_color_texture.uv_offset == glm::vec2(0));
+  }
+  std::size_t checked = 0;
+  for (std::size_t i = 0; i < g.exempt.size() && g.exempt[i] == 1; ++i) {
+    const Primitive& p = g.scene.meshes[g.scene.objects.mesh[i].value].primitives.at(0);
+    const TextureId texture = g.scene.materials[p.material.value].base_color_texture.texture;
+    REQUIRE(texture.valid());
+    CHECK(g.scene.textures[texture.value].sampler.wrap_s == 10497);
+    const Geometry& box = g.scene.geometries[p.geometry.value];
+    const glm::vec3 scale = g.scene.objects.frame_from_object[i].scale;
+    for (std::size_t a = 0; a + 1 < box.vertex_count(); ++a) {
+      const std::size_t b = a + 1;
+      if (a % 4 == 3) continue;  // the next face
+      const float metres = glm::length((box.positions_m[a] - box.positions_m[b]) * scale);
+      CHECK(glm::length(box.texcoords[0][a] - box.texcoords[0][b]) * 6.0F == Approx(metres));
+      ++checked;
+    }
+  }
+  CHECK(checked == 2 * 6 * 3);
 }
 
 TEST_CASE("model files stand in for buildings and extra objects") {

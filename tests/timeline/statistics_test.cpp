@@ -52,6 +52,7 @@ TEST_CASE("counts of a static scene") {
   REQUIRE(s.bounds_m == Box{{0, 0, 0}, {41, 1, 2}});
   REQUIRE_FALSE(s.coherence_measured.has_value());
   REQUIRE_FALSE(s.locality_cells.has_value());
+  REQUIRE_FALSE(s.jumps.has_value());
 }
 
 TEST_CASE("events per moment") {
@@ -93,6 +94,26 @@ TEST_CASE("coherence is measured again from the tracks, not copied") {
 
   scene.info.appearance->coherence_measured = 0.1;  // what a file says is not what is measured
   REQUIRE(statistics(scene).coherence_measured == 0.75);
+}
+
+TEST_CASE("jumps are those of the scene's own grid") {
+  const auto jumps = [](glm::uvec3 cells, CurveKind curve) {
+    Scene scene = sample();
+    AppearanceOptions options;
+    options.cells = cells;
+    options.curve = curve;
+    REQUIRE(assign_appearance(scene, options));
+    const std::optional<std::uint64_t> found = statistics(scene).jumps;
+    REQUIRE(found.has_value());
+    CHECK(found == locality(curve, cells, {}).jumps);
+    scene.info.appearance->curve = "peano";  // not one of ours: nothing is said
+    CHECK_FALSE(statistics(scene).jumps.has_value());
+    return *found;
+  };
+  CHECK(jumps({8, 8, 8}, CurveKind::hilbert) == 0);
+  CHECK(jumps({5, 3, 7}, CurveKind::hilbert) > 0);
+  CHECK(jumps({5, 3, 7}, CurveKind::row_prime) == 0);
+  CHECK(jumps({2, 2, 2}, CurveKind::morton) == 3);
 }
 
 TEST_CASE("an empty scene has empty statistics") {

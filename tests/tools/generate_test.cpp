@@ -197,6 +197,7 @@ TEST_CASE("inspect agrees with what was generated, in three forms") {
   CHECK(inspected["ignored"].empty());
   CHECK(inspected["findings"].empty());
   CHECK(inspected["coherenceGiven"] == 0.8);
+  CHECK(inspected["jumps"] == 0);  // Hilbert's curve on 16^3 cells
   CHECK(inspected["coherence"].get<double>() == Approx(0.8).margin(1e-4));
   CHECK(made["timed"].get<int>() > 1000);
   CHECK(inspected["classes"]["pseudoDynamic"] == made["timed"]);  // the others are the ground
@@ -207,7 +208,7 @@ TEST_CASE("inspect agrees with what was generated, in three forms") {
   const std::string table = made_by(folder, "inspect a.glb").out;
   for (const char* part :
        {"static", "pseudo-dynamic", "meshes", "materials", "events per moment", "length", "coherence given",
-        "coherence measured", "locality", "JSON", "binary", "seed", "arguments"}) {
+        "coherence measured", "jumps", "locality", "JSON", "binary", "seed", "arguments"}) {
     CHECK_THAT(table, Catch::Matchers::Contains(part));
   }
 }
