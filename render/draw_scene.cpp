@@ -46,6 +46,17 @@ DrawScene::DrawScene(const Scene& scene, const timeline::Player& player,
     place(id, player.world_from_object(id));
     refresh_visibility(id, player);
   }
+  const std::span<const ObjectId> moving = player.timeline().moving_objects();
+  moving_objects_.assign(moving.begin(), moving.end());
+  std::size_t next = 0;
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+    if (next < moving_objects_.size() && moving_objects_[next].value == i) {
+      ++next;
+    } else {
+      add_boxes_of(ObjectId(i), resting_bounds_m_);
+    }
+  }
+  refresh_bounds();
 }
 
 void DrawScene::build_primitives(const Scene& scene, std::span<const std::uint32_t> texture_set_of_material) {
@@ -157,9 +168,24 @@ void DrawScene::place(ObjectId id, const glm::mat4& world_from_object) {
   for (const std::uint32_t slot : slots_of(id)) {
     const Box box = transformed(primitives_[primitive_of_slot_[slot]].bounds_m, world_from_object);
     boxes_.set(slot, box);
-    if (!box.empty()) bounds_m_.add(box);
     inside_out ? mirrored_.set(slot) : mirrored_.reset(slot);
   }
+}
+
+void DrawScene::add_boxes_of(ObjectId id, Box& bounds_m) const {
+  for (const std::uint32_t slot : slots_of(id)) {
+    Box box;
+    for (int axis = 0; axis < 3; ++axis) {
+      box.lo[axis] = boxes_.centre[axis][slot] - boxes_.half[axis][slot];
+      box.hi[axis] = boxes_.centre[axis][slot] + boxes_.half[axis][slot];
+    }
+    if (!box.empty()) bounds_m.add(box);
+  }
+}
+
+void DrawScene::refresh_bounds() {
+  bounds_m_ = resting_bounds_m_;
+  for (const ObjectId id : moving_objects_) add_boxes_of(id, bounds_m_);
 }
 
 void DrawScene::refresh_visibility(ObjectId id, const timeline::Player& player) {
@@ -186,6 +212,7 @@ void DrawScene::apply(const timeline::ChangeSet& changes, const timeline::Player
       dirty_records_.push_back(record(slot, world_from_object));
     }
   }
+  if (!changes.moved.empty()) refresh_bounds();
 }
 
 ObjectRecord DrawScene::record(std::uint32_t slot, const glm::mat4& m) const {

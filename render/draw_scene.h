@@ -84,7 +84,8 @@ class DrawScene {
   DrawScene(const Scene& scene, const timeline::Player& player,
             std::span<const std::uint32_t> texture_set_of_material);
 
-  /// Brings visible set, boxes and records up to the player's state. O(changes).
+  /// Brings visible set, boxes and records up to the player's state. O(changes), and O(objects that ever
+  /// move) when one of them did.
   void apply(const timeline::ChangeSet& changes, const timeline::Player& player);
 
   [[nodiscard]] std::size_t object_count() const { return visible_object_.size(); }
@@ -99,7 +100,8 @@ class DrawScene {
   [[nodiscard]] const SlotBoxes& boxes() const { return boxes_; }
   /// Its transform turns the object inside out: front faces wind the other way.
   [[nodiscard]] bool mirrored(std::uint32_t slot) const { return mirrored_.test(slot); }
-  /// Box round every place where something was so far, hidden or not: what shadows must reach.
+  /// Box round everything where it is now, hidden or not: what shadows must reach. Like all state here it
+  /// depends on the time alone, not on the frames drawn before, so that a picture does not either.
   [[nodiscard]] const Box& bounds_m() const { return bounds_m_; }
 
   /// Records for the device of all slots, in slot order; used once.
@@ -114,6 +116,8 @@ class DrawScene {
   void build_slots(const Scene& scene);
   void place(ObjectId id, const glm::mat4& world_from_object);
   void refresh_visibility(ObjectId id, const timeline::Player& player);
+  void add_boxes_of(ObjectId id, Box& bounds_m) const;
+  void refresh_bounds();
   [[nodiscard]] std::span<const std::uint32_t> slots_of(ObjectId id) const;
   [[nodiscard]] ObjectRecord record(std::uint32_t slot, const glm::mat4& world_from_object) const;
 
@@ -130,6 +134,8 @@ class DrawScene {
   std::vector<std::uint8_t> visible_object_;
   std::size_t visible_objects_ = 0;
   std::uint32_t default_material_ = 0;
+  std::vector<ObjectId> moving_objects_;
+  Box resting_bounds_m_;  // of the objects that never move
   Box bounds_m_;
   std::vector<std::uint32_t> dirty_slots_;
   std::vector<ObjectRecord> dirty_records_;

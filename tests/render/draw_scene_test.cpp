@@ -192,4 +192,12 @@ TEST_CASE("moved objects give dirty records, once, with their new place") {
   drawn.clear_dirty();
   drawn.apply(player.seek(1.0), player);
   CHECK(drawn.dirty_slots().empty());
+
+  // What shadows must reach depends on the time, not on where things have been.
+  const Box at_1_s = drawn.bounds_m();
+  CHECK(at_1_s.hi.y == Approx(2.5F));
+  drawn.apply(player.seek(2.0), player);
+  CHECK(drawn.bounds_m().hi.y == Approx(4.5F));
+  drawn.apply(player.seek(1.0), player);
+  CHECK(drawn.bounds_m() == at_1_s);
 }
