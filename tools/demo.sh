@@ -14,5 +14,5 @@ if ! { cmake --preset release && cmake --build --preset release --target scenege
 fi
 
 build/release/bin/scenegen --grid 4x4 --curve hilbert --coherence 0.95 -o build/demo/town.glb
-build/release/bin/sceneplay frames build/demo/town.glb -o build/demo/frames --times 15%,35%,55%,75%,100% --size 1280x720
+build/release/bin/sceneplay frames build/demo/town.glb -o build/demo/frames --times 20%,40%,60%,80%,100% --camera auto --size 1280x720
 echo "The pictures are build/demo/frames/*.png; the scene is build/demo/town.glb."
