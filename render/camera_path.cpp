@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
+#include <string_view>
 
 namespace scenegen::render {
 namespace {
@@ -37,14 +39,28 @@ std::optional<glm::dvec3> point(const json& object, const char* key) {
   return p;
 }
 
+/// A misspelt member would silently leave its default in force.
+Result<void> check_members(const json& object, std::span<const std::string_view> known,
+                           const std::string& where) {
+  for (const auto& [key, value] : object.items()) {
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    std::string names;
+    for (const std::string_view name : known) names += (names.empty() ? "" : ", ") + std::string(name);
+    return fail(ErrorKind::bad_input, where + "/" + key.substr(0, 40), "unknown member; one of: " + names);
+  }
+  return {};
+}
+
 Result<CameraKey> parse_key(const json& object, const std::string& where) {
   if (!object.is_object()) return fail(ErrorKind::bad_input, where, "must be an object");
+  constexpr std::array<std::string_view, 4> kKnown{"time_s", "eye_m", "target_m", "yfov_rad"};
+  if (Result<void> known = check_members(object, kKnown, where); !known) return forward_error(known);
   const auto time = number(object, "time_s");
-  if (!time) return fail(ErrorKind::bad_input, where + "/time_s", "must be a finite number");
+  if (!time) return fail(ErrorKind::bad_input, where + "/time_s", "must be a number within +-1e9 s");
   const auto eye = point(object, "eye_m");
-  if (!eye) return fail(ErrorKind::bad_input, where + "/eye_m", "must be three finite numbers");
+  if (!eye) return fail(ErrorKind::bad_input, where + "/eye_m", "must be three numbers within +-1e9 m");
   const auto target = point(object, "target_m");
-  if (!target) return fail(ErrorKind::bad_input, where + "/target_m", "must be three finite numbers");
+  if (!target) return fail(ErrorKind::bad_input, where + "/target_m", "must be three numbers within +-1e9 m");
   if (*eye == *target) return fail(ErrorKind::bad_input, where + "/target_m", "must differ from eye_m");
   CameraKey key{*time, *eye, *target, 0.6};
   if (object.contains("yfov_rad")) {
@@ -102,6 +118,8 @@ Result<CameraPath> parse_camera_path(std::string_view text, const std::string& n
   const json document = json::parse(text, nullptr, false);
   if (document.is_discarded()) return fail(ErrorKind::bad_input, name, "is not JSON");
   if (!document.is_object()) return fail(ErrorKind::bad_input, name, "must be an object with /keys");
+  constexpr std::array<std::string_view, 4> kKnown{"version", "interpolation", "near_m", "keys"};
+  if (Result<void> known = check_members(document, kKnown, name + ": "); !known) return forward_error(known);
   if (document.contains("version") && document["version"] != 1)
     return fail(ErrorKind::bad_input, name + ": /version", "must be 1");
   CameraPath path;

@@ -17,9 +17,9 @@ Result<double> parse_moment(std::string_view text, double duration_s) {
   }
   Result<double> seconds = parse_real(text, 0.0, 1e9);
   if (seconds && *seconds > duration_s)
-    return fail(
-        ErrorKind::usage, "",
-        "'" + std::string(text) + "' is behind the end of the timeline, " + shortest(duration_s) + " s");
+    return fail(ErrorKind::usage, "",
+                "'" + std::string(text) + "' is after the end of the timeline, " +
+                    shortest_float(static_cast<float>(duration_s)) + " s");
   return seconds;
 }
 
@@ -64,6 +64,8 @@ Result<std::vector<double>> parse_times(std::string_view text, double duration_s
       return fail(ErrorKind::usage, "", "more than " + human_count(kMaxFrames) + " frames");
     begin = end + 1;
   }
+  // Keys are float32: "0.1" must meet the key at 0.1 s, which lies 1.5e-9 s above the double of that name.
+  for (double& time_s : out) time_s = static_cast<double>(static_cast<float>(time_s));
   return out;
 }
 

@@ -64,7 +64,7 @@ void add_town_options(Options& options, GenerateRequest& r) {
   options.add("--test-set", test_set_value(r.test_set),
               "a test set of the dissertation's table 1 instead of a town", Role::content, "none");
   options.add("--seed", whole_value<std::uint64_t>(r.seed, 0, limits::kMaxSeed),
-              "of everything random: brick tints, extra objects, displaced times", Role::content);
+              "of everything random: roofs, brick tints, extra objects, displaced times", Role::content);
 }
 
 void add_building_options(Options& options, GenerateRequest& r) {

@@ -80,8 +80,9 @@ Result<CameraId> find_camera(const Scene& scene, const std::string& wanted) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
     if (scene.cameras[i].name == wanted || std::to_string(i) == wanted) return CameraId(i);
-    names.push_back(scene.cameras[i].name);
+    names.push_back(scene.cameras[i].name.empty() ? std::to_string(i) : scene.cameras[i].name);
   }
+  names.emplace_back("auto");
   if (scene.cameras.empty())
     return fail(ErrorKind::usage, "--camera", "the file has no camera; 'auto' frames the scene");
   return fail(ErrorKind::usage, "--camera", unknown_word("camera", wanted, names));
@@ -362,7 +363,8 @@ void add_options(Options& options, FramesRequest& r) {
   options.group("View");
   options.add("--camera",
               text_value(r.camera, "NAME|INDEX", "a camera of the file, or auto: frame the whole scene"),
-              "camera", Role::run, "the file's first, else auto");
+              "camera; a file's camera may crop the scene at another shape of picture than it was made for",
+              Role::run, "the file's first, else auto");
   options.add("--camera-path", text_value(r.camera_path, "FILE"),
               "camera path as JSON (docs/CAMERA_PATH.md)");
   options.group("Drawing");

@@ -85,6 +85,12 @@ Result<std::vector<std::string_view>> split_size(std::string_view text, std::siz
   return parts;
 }
 
+std::string shortest_float(float value) {
+  std::array<char, 32> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+  return {buffer.data(), end};
+}
+
 std::string shortest(double value) {
   std::array<char, 32> buffer{};
   const double size = std::abs(value);

@@ -24,6 +24,8 @@ namespace scenegen::tools {
 /// Shortest digits that read back as the same double: "0.1", "1000000"; with an exponent below 1e-6 and from
 /// 1e15 on.
 [[nodiscard]] std::string shortest(double value);
+/// The shortest text that reads back as the same float32: 41.74, not 41.7400016784668.
+[[nodiscard]] std::string shortest_float(float value);
 
 /// The candidate that `text` was most likely meant to be, or "" when none is near: optimal string alignment
 /// distance (Damerau 1964) of at most a third of its length, or `text` is the beginning of exactly one

@@ -356,14 +356,19 @@ void ObjectBuilder::add_names() {
     const Place extras = scene.key("extras");
     const Place ours = extras.key("scenegen");
     const Place at = ours.key("names");
-    if (document_.names[shown].count != count) {
-      reject(at.key("count"), std::to_string(document_.names[shown].count) + " names of " +
-                                  std::to_string(count) + " objects");
+    // Tools that rebuild buffer views without knowing our extras (gltf-transform copy) leave a table that
+    // points anywhere: the scene is whole without it, so it loses its names and says so.
+    try {
+      if (document_.names[shown].count != count) {
+        reject(at.key("count"), std::to_string(document_.names[shown].count) + " names of " +
+                                    std::to_string(count) + " objects");
+      }
+      const NameTable table = decode_names(document_.names[shown], data_, at);
+      scene_.objects.names.reserve(count, table.byte_count());
+      return names.add_all(count, [&](std::size_t i) { return table[i]; });
+    } catch (const Fault& fault) {
+      document_.ignored.add(at, "the table of object names is damaged (" + fault.error.what + ")");
     }
-    const NameTable table = decode_names(document_.names[shown], data_, at);
-    scene_.objects.names.reserve(count, table.byte_count());
-    names.add_all(count, [&](std::size_t i) { return table[i]; });
-    return;
   }
   std::size_t bytes = 0;
   for (const std::uint32_t node : origins_.node) bytes += document_.nodes[node].name.size();

@@ -60,7 +60,10 @@ void parse_target(Value value, const Place& at, Channel& channel, Document& out)
     }
   });
   if (path == "pointer") {
-    if (!has_pointer) reject(at, "path \"pointer\" without extensions.KHR_animation_pointer.pointer");
+    if (!has_pointer) {
+      // gltf-transform 4.5 leaves such channels behind; viewers play what else is there.
+      return out.ignored.add(at, "animation channels with path \"pointer\" and no pointer");
+    }
     if (node != kNone) reject(at.key("node"), "must be absent when the path is \"pointer\"");
     channel.path = pointed.path;
     channel.target = pointed.target;

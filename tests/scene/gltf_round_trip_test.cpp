@@ -9,6 +9,7 @@
 #include "scene/gltf/read.h"
 #include "scene/gltf/write.h"
 #include "scene/validate.h"
+#include "tests/support/gltf_file.h"
 #include "tests/support/synthetic_scene.h"
 #include "tests/timeline/random_scene.h"
 #include "timeline/compare.h"
@@ -235,4 +236,23 @@ TEST_CASE("the source document is kept, byte for byte, when asked for") {
   CHECK(read->source->instance_of_object.size() == 3000);
   CHECK(read->file_bytes == std::filesystem::file_size(path));
   CHECK(gltf::read(path)->source == nullptr);
+}
+
+TEST_CASE("a name table that another tool has left pointing elsewhere costs the names, not the scene") {
+  const TemporaryFolder folder;
+  const Scene scene = testing::town_scene(400, 5);
+  const std::string path = (folder.path / "town.gltf").string();
+  REQUIRE(gltf::write(scene, path, {gltf::Layout::instances, gltf::VisibilityEncoding::scale, 1}));
+  std::string text = testing::file_bytes(path);
+  const std::string member = "\"names\":{\"bufferView\":";
+  const std::size_t at = text.find(member);
+  REQUIRE(at != std::string::npos);
+  text.replace(at, text.find(',', at) - at, member + "0");  // as gltf-transform 4.5 does on copying
+  const auto read = gltf::read_memory({text.begin(), text.end()}, "town.gltf", folder.path.string());
+  REQUIRE(read);
+  CHECK(read->scene.objects.size() == scene.objects.size());
+  CHECK(read->scene.objects.visibility == scene.objects.visibility);
+  CHECK(validate(read->scene).empty());
+  REQUIRE(read->ignored.size() == 1);
+  CHECK(read->ignored[0].where == "/scenes/0/extras/scenegen/names");
 }

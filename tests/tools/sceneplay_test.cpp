@@ -44,6 +44,9 @@ TEST_CASE("times: seconds, percentages, ranges") {
   CHECK(parse_times("2:4:0.5", 8).value() == std::vector<double>{2, 2.5, 3, 3.5, 4});
   CHECK(parse_times("0:100%:25%", 8).value() == std::vector<double>{0, 2, 4, 6, 8});
   CHECK(parse_times("0:1:0.1", 8).value().size() == 11);
+  // Keys are float32, and what is asked for must meet the key of that name.
+  CHECK(parse_times("0.1", 8).value() == std::vector<double>{static_cast<double>(0.1F)});
+  CHECK(parse_times("0:1:0.1", 8).value()[3] == static_cast<double>(0.3F));
   for (const char* wrong : {"", ",", "1,,2", "a", "-1", "101%", "9", "nan", "inf", "1:2", "2:1:1", "1:2:0",
                             "1:2:3:4", "0:8:1e-9"}) {
     INFO(wrong);
@@ -116,7 +119,7 @@ TEST_CASE("wrong calls: one line and the right exit code") {
   check_error(play(start + "--size 0x9"), 2, "--size");
   check_error(play(start + "--size 99999x9"), 2, "--size");
   check_error(play(start + "--times 101%"), 2, "--times: ");
-  check_error(play(start + "--times 99"), 2, "--times: '99' is behind the end");
+  check_error(play(start + "--times 99"), 2, "--times: '99' is after the end");
   check_error(play(start + "--times 0 --fps 25"), 2, "--times");
   check_error(play(start + "--fps 0"), 2, "--fps");
   check_error(play(start + "--fps 10000 --duration 1000000"), 2, "--fps");
