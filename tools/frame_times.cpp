@@ -16,7 +16,7 @@ Result<double> parse_moment(std::string_view text, double duration_s) {
     return *percent * 0.01 * duration_s;
   }
   Result<double> seconds = parse_real(text, 0.0, 1e9);
-  if (seconds && *seconds > duration_s)
+  if (seconds && static_cast<float>(*seconds) > static_cast<float>(duration_s))
     return fail(ErrorKind::usage, "",
                 "'" + std::string(text) + "' is after the end of the timeline, " +
                     shortest_float(static_cast<float>(duration_s)) + " s");

@@ -120,7 +120,8 @@ void add_appearance_options(Options& options, GenerateRequest& r) {
   options.add("--curve", curve_value(r.curve), "curve along which objects appear; none makes a static scene",
               Role::content);
   options.add("--order", order_value(a.order),
-              "axes from the fastest to the slowest, with directions: +x+y-z goes top-down (z is up)",
+              "axes from the fastest to the slowest, with directions (z is up): +x+y-z mirrors the curve in "
+              "z; with row-prime it goes layer by layer, top-down",
               Role::content);
   options.add("--cells", size3_value(a.cells, glm::uvec3(1), glm::uvec3(limits::kMaxCellsPerAxis), "XxYxZ"),
               "grid of cells that the curve runs through", Role::content);

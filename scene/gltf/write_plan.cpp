@@ -77,7 +77,7 @@ void choose_layout(const Scene& scene, const WriteOptions& options, NodePlan& pl
   }
   if (plan.layout == Layout::groups) {
     make_groups(scene, apart, false, plan);
-    if (plan.pointer())
+    if (!plan.scale())
       plan.notes.emplace_back(
           "groups with pointer visibility does not play in Babylon.js (it ignores it on nodes without a "
           "mesh)");

@@ -46,6 +46,8 @@ TEST_CASE("times: seconds, percentages, ranges") {
   CHECK(parse_times("0:1:0.1", 8).value().size() == 11);
   // Keys are float32, and what is asked for must meet the key of that name.
   CHECK(parse_times("0.1", 8).value() == std::vector<double>{static_cast<double>(0.1F)});
+  CHECK(parse_times("7.93", static_cast<double>(7.93F)).value() ==
+        std::vector<double>{static_cast<double>(7.93F)});
   CHECK(parse_times("0:1:0.1", 8).value()[3] == static_cast<double>(0.3F));
   for (const char* wrong : {"", ",", "1,,2", "a", "-1", "101%", "9", "nan", "inf", "1:2", "2:1:1", "1:2:0",
                             "1:2:3:4", "0:8:1e-9"}) {
