@@ -54,8 +54,8 @@ std::string alpha_text(AlphaMode mode) {
 }  // namespace
 
 const Material& material_of(const Scene& scene, MaterialId id) {
-  static const Material kDefault;
-  return id.valid() ? scene.materials[id.value] : kDefault;
+  static const Material gltf_default;
+  return id.valid() ? scene.materials[id.value] : gltf_default;
 }
 
 bool ContentComparer::close(float a, float b) const {

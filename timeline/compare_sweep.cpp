@@ -226,12 +226,12 @@ void Sweep::add_material_pairs(MeshId a, MeshId b, std::uint32_t object) {
 }
 
 void Sweep::check_colors(MaterialPair& pair) {
-  const Material kDefault;
+  const Material gltf_default;
   const auto base = [&](const Player& p, MaterialId m) {
-    return m.valid() ? p.base_color(m) : kDefault.base_color;
+    return m.valid() ? p.base_color(m) : gltf_default.base_color;
   };
   const auto emissive = [&](const Player& p, MaterialId m) {
-    return m.valid() ? p.emissive(m) : kDefault.emissive;
+    return m.valid() ? p.emissive(m) : gltf_default.emissive;
   };
   const glm::vec4 base_a = base(player_a_, pair.a);
   const glm::vec4 base_b = base(player_b_, pair.b);
