@@ -31,7 +31,7 @@ struct Ignored {
 
 struct ReadOptions {
   bool keep_source = false;  ///< fill ReadResult::source (holds the file's bytes in memory)
-  unsigned threads = 1;  ///< a hint; one thread reads 1 M objects in 1 s, so it is not used yet
+  unsigned threads = 1;      ///< a hint; one thread reads 1 M objects in 1 s, so it is not used yet
 };
 
 struct ReadResult {
