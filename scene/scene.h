@@ -221,12 +221,28 @@ struct AppearanceInfo {
       0;  ///< DESIGN 5: mean longest side of the box round 512 consecutive cells of a 32^3 grid
 };
 
+/// A task of a schedule, kept so that players can show what is being worked at.
+struct CalendarTask {
+  std::string id, name;
+  std::string type;  ///< canonical profile name: "construct", "demolish", …
+  double start_s = 0, finish_s = 0;
+};
+
+/// How the timeline's seconds are dates: t seconds are `start` + t / seconds_per_day days. Written to
+/// asset.extras.scenegen.calendar.
+struct Calendar {
+  std::string start;  ///< ISO 8601 without zone: "2024-03-01" or "2024-03-01T08:00:00"
+  double seconds_per_day = 1;
+  std::vector<CalendarTask> tasks;
+};
+
 struct SceneInfo {
   std::string generator;  ///< "scenegen 0.1.0"; of a foreign file: its asset.generator
   std::optional<std::uint64_t> seed;
   std::vector<std::string>
       arguments;  ///< canonical: everything that decides the content, nothing that does not
   std::optional<AppearanceInfo> appearance;
+  std::optional<Calendar> calendar;
 };
 
 // ---- The scene
