@@ -1,5 +1,6 @@
-// Adds what a scene gained since it was read to the document that it was read from, and keeps the rest of that
-// document byte for byte: materials, textures, skins, cameras, lights, animations, extras, unknown extensions.
+// Adds what a scene gained since it was read to the document that it was read from, and keeps the rest of
+// that document byte for byte: materials, textures, skins, cameras, lights, animations, extras, unknown
+// extensions.
 #pragma once
 
 #include <cstdint>
