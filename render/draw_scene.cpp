@@ -7,30 +7,6 @@
 
 namespace scenegen::render {
 
-void SlotBoxes::resize(std::size_t n) {
-  for (int axis = 0; axis < 3; ++axis) {
-    centre[axis].resize(n);
-    half[axis].resize(n);
-  }
-}
-
-void SlotBoxes::set(std::size_t slot, const Box& box) {
-  if (box.empty()) {  // nothing to draw: a box that every plane rejects
-    for (int axis = 0; axis < 3; ++axis) {
-      centre[axis][slot] = 0.0F;
-      half[axis][slot] = -std::numeric_limits<float>::infinity();
-    }
-    return;
-  }
-  const glm::vec3 reach = glm::max(glm::abs(box.lo), glm::abs(box.hi));
-  const float largest = std::max({reach.x, reach.y, reach.z});
-  const float slack = 8.0F * std::numeric_limits<float>::epsilon() * largest;
-  for (int axis = 0; axis < 3; ++axis) {
-    centre[axis][slot] = 0.5F * box.lo[axis] + 0.5F * box.hi[axis];
-    half[axis][slot] = 0.5F * (box.hi[axis] - box.lo[axis]) + slack;
-  }
-}
-
 DrawScene::DrawScene(const Scene& scene, const timeline::Player& player,
                      std::span<const std::uint32_t> texture_set_of_material) {
   default_material_ = static_cast<std::uint32_t>(scene.materials.size());
@@ -87,7 +63,10 @@ void DrawScene::build_primitives(const Scene& scene, std::span<const std::uint32
       state.double_sided = material.double_sided;
       state.texture_set = texture_set_of_material[material_index];
       states.push_back(state);
-      primitives_.push_back({p.geometry, MaterialId(material_index), MeshId(m), 0, bounds[p.geometry.value]});
+      const auto vertices =
+          static_cast<std::uint32_t>(scene.geometries[p.geometry.value].drawn_vertex_count());
+      primitives_.push_back(
+          {p.geometry, MaterialId(material_index), MeshId(m), 0, vertices, bounds[p.geometry.value]});
     }
   }
 
@@ -142,6 +121,9 @@ void DrawScene::build_slots(const Scene& scene) {
     if (p == 0 || primitives_[p - 1].batch != primitives_[p].batch) batch.first = next[p];
     batch.end = next[p + 1];
   }
+  for (const Batch& batch : batches_) {
+    if (batch.state.alpha != AlphaMode::blend) solid_end_ = batch.end;
+  }
   const std::uint32_t slots = next.back();
   primitive_of_slot_.resize(slots);
   object_of_slot_.resize(slots);
@@ -174,11 +156,7 @@ void DrawScene::place(ObjectId id, const glm::mat4& world_from_object) {
 
 void DrawScene::add_boxes_of(ObjectId id, Box& bounds_m) const {
   for (const std::uint32_t slot : slots_of(id)) {
-    Box box;
-    for (int axis = 0; axis < 3; ++axis) {
-      box.lo[axis] = boxes_.centre[axis][slot] - boxes_.half[axis][slot];
-      box.hi[axis] = boxes_.centre[axis][slot] + boxes_.half[axis][slot];
-    }
+    const Box box = boxes_.get(slot);
     if (!box.empty()) bounds_m.add(box);
   }
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "render/draw_scene.h"
+#include "render/spatial/frustum_cull.h"
 #include "render/view.h"
 
 namespace scenegen::render {
@@ -14,7 +15,8 @@ namespace scenegen::render {
 struct DrawList {
   std::vector<std::uint32_t> solid;
   std::vector<std::uint32_t> blended;
-  std::uint64_t tested = 0;  ///< boxes tested against the frustum
+  std::uint64_t tested = 0;           ///< boxes tested against the frustum
+  std::vector<std::uint64_t> inside;  ///< scratch: bits of slots
 
   void clear() {
     solid.clear();
@@ -26,7 +28,7 @@ struct DrawList {
 /// Everything that is visible by timeline.
 void list_visible(const DrawScene& scene, DrawList& out);
 /// What of it touches the frustum; never misses anything (boxes and planes carry slack for rounding).
-void list_in_frustum(const DrawScene& scene, const Frustum& frustum, DrawList& out);
+void list_in_frustum(const DrawScene& scene, const CullPlanes& planes, DrawList& out);
 /// Farthest first along the view direction, by the boxes' centres; ties by object, then slot.
 void sort_back_to_front(const DrawScene& scene, const View& view, std::vector<std::uint32_t>& slots);
 

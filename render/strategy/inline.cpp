@@ -1,4 +1,4 @@
-// D method 1: per-object frustum culling, every visible object recorded each frame.
+// D method 1: frustum culling of every object (with SIMD), every visible object recorded each frame.
 #include "render/strategy/list_strategy.h"
 
 namespace scenegen::render {
@@ -8,7 +8,7 @@ class Inline final : public ListStrategy {
  public:
   using ListStrategy::ListStrategy;
   PlanCounters plan(const View& view) override {
-    list_in_frustum(scene_, frustum_of(view.clip_from_world), list_);
+    list_in_frustum(scene_, cull_planes(frustum_of(view.clip_from_world), scene_.bounds_m()), list_);
     return finish_plan(view);
   }
 };
