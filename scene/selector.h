@@ -14,10 +14,14 @@
 namespace scenegen {
 
 /// What a file says of objects beyond the scene: the nodes above them, their extras, their materials' names.
-/// Built once from the source document; memory grows with the document only.
+/// Built once from the source document; memory grows with the document only. Keeps a reference to the scene,
+/// of whose objects and materials it knows those that read() gave.
 class ObjectFacts {
  public:
-  ObjectFacts(const Scene& scene, const gltf::SourceDocument& source);
+  /// Errors (bad_input): JSON inside extras that read() had no reason to look at.
+  [[nodiscard]] static Result<ObjectFacts> make(const Scene& scene, const gltf::SourceDocument& source);
+  /// Sorts what there is to look up, so that thousands of selectors are quick. One or a few are without it.
+  void index();
   ~ObjectFacts();
   ObjectFacts(ObjectFacts&&) noexcept;
   ObjectFacts& operator=(ObjectFacts&&) noexcept;
@@ -25,17 +29,27 @@ class ObjectFacts {
  private:
   friend class Selector;
   struct State;
+  explicit ObjectFacts(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
 
 /// "name=Wall*"      glob over object names (* ? [abc]); a bare word without '=' is the same
 /// "name~^Wall_\d+"  regular expression (RE2) over object names
-/// "extras.guid=2O2Fr$" value of a member of the node's extras, or of the nearest node above that has it
+/// "extras.guid=2O2Fr$" value of a member of the node's extras, or of the nearest node above that has it;
+///                    "extras.ifc.guid" is a member of a member
 /// "material=Brick*" glob over names of the materials of the object's mesh
 /// "subtree=Storey*" objects at or below a node whose name matches the glob
+/// Every value is a glob (scene/glob.h) behind '=' and a regular expression behind '~'.
 class Selector {
  public:
+  /// Errors (usage, `where` empty): an unknown kind, a pattern that does not parse, above 4096 bytes.
   [[nodiscard]] static Result<Selector> parse(std::string_view text);
+  /// The object of that name, whatever its characters.
+  [[nodiscard]] static Selector with_name(std::string_view name);
+  /// Objects whose nearest node with an identifier has this one; when there are none, those below a node that
+  /// has it. An identifier is a member of extras named guid, GlobalId, ifcGuid or ifcGlobalId, in any case
+  /// and with or without underscores, at any depth.
+  [[nodiscard]] static Selector with_guid(std::string_view guid);
   /// Ascending.
   [[nodiscard]] std::vector<ObjectId> select(const ObjectFacts& facts) const;
   ~Selector();
