@@ -224,23 +224,21 @@ std::uint64_t add_tracks(Scene& scene, const AppearanceOptions& options, std::ui
   return moments;
 }
 
-/// Share of the objects with a visibility track that first appear at their own cell's time.
-double share_in_order(const Scene& scene, std::span<const std::uint32_t> own_rank, double interval_s) {
-  // Tracks are shared by many objects: look at each once.
-  std::vector<float> appears_s(scene.tracks.size(), -1.0F);
+/// Share of the objects to which something happens at a time of their own (starts_s) for which it is their
+/// own cell's time.
+std::optional<double> share_in_order(const Scene& scene, std::span<const std::uint32_t> own_rank,
+                                     double interval_s) {
   std::uint64_t timed = 0;
   std::uint64_t in_order = 0;
+  const ObjectStarts starts(scene);
   for (std::size_t i = 0; i < own_rank.size(); ++i) {
-    const TrackId track = scene.objects.visibility[i];
-    if (!track.valid()) continue;
-    float& appears = appears_s[track.value];
-    if (appears == -1.0F) {
-      appears = first_appearance_s(scene, ObjectId(i)).value_or(std::numeric_limits<float>::infinity());
-    }
+    const std::optional<float> start_s = starts.of(ObjectId(i));
+    if (!start_s) continue;
     ++timed;
-    if (appears == cell_time_s(own_rank[i], interval_s)) ++in_order;
+    if (*start_s == cell_time_s(own_rank[i], interval_s)) ++in_order;
   }
-  return timed == 0 ? 1.0 : static_cast<double>(in_order) / static_cast<double>(timed);
+  if (timed == 0) return std::nullopt;
+  return static_cast<double>(in_order) / static_cast<double>(timed);
 }
 
 /// Rank along the curve of every object's own cell.
@@ -318,7 +316,7 @@ Result<AppearanceInfo> assign_appearance(Scene& scene, const AppearanceOptions& 
   info.displaced_objects = displace(options, *cells, timed, rank);
   remove_visibility_tracks(scene);
   info.moments = add_tracks(scene, options, *cells, rank);
-  info.coherence_measured = share_in_order(scene, own, options.interval_s);
+  info.coherence_measured = share_in_order(scene, own, options.interval_s).value_or(1.0);
   info.locality_cells = locality(options.curve, glm::uvec3(32U), options.order).mean_box_side_cells;
   scene.info.appearance = info;
   scene.info.seed = options.seed;
@@ -332,7 +330,10 @@ Result<double> measure_coherence(const Scene& scene, unsigned threads) {
   const std::vector<std::uint32_t> own =
       own_ranks(placed_bounds(scene, threads), CellGrid(info.cells, info.grid_z_up_m),
                 cell_ranks(given->kind, info.cells, given->order), threads);
-  return share_in_order(scene, own, info.interval_s);
+  const std::optional<double> share = share_in_order(scene, own, info.interval_s);
+  if (share) return *share;
+  if (info.timed_objects == 0) return 1.0;
+  return fail(ErrorKind::bad_input, "appearance", "the scene's tracks do not show when its objects start");
 }
 
 Result<std::uint64_t> curve_jumps(const SceneInfo& info) {

@@ -29,8 +29,10 @@ struct AppearanceOptions {
 [[nodiscard]] Result<AppearanceInfo> assign_appearance(Scene& scene, const AppearanceOptions& options,
                                                        std::span<const std::uint8_t> exempt = {});
 
-/// Share of timed objects whose first appearance is the time of their own cell, computed from the scene's
-/// tracks and info.appearance alone.
+/// Share of timed objects that start (first appear; under other profiles: ObjectStarts in track_table.h) at
+/// the time of their own cell, computed from the scene's tracks and info.appearance alone. An error
+/// (bad_input) when the tracks do not show that anything starts though objects were timed (profile move or
+/// operate without a highlight).
 [[nodiscard]] Result<double> measure_coherence(const Scene& scene, unsigned threads = 1);
 
 /// Steps of info.appearance's curve on its own grid between cells that share no face: none for Hilbert's on a

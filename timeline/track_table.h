@@ -1,7 +1,10 @@
 // Upkeep of a scene's table of tracks.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <span>
+#include <unordered_map>
 
 #include "scene/scene.h"
 
@@ -11,8 +14,46 @@ namespace scenegen::timeline {
 /// that no other track uses, and renumbers what names the tracks that stay.
 void remove_visibility_tracks(Scene& scene);
 
+/// Drops tracks that nothing names with the keys that no other track uses, and renumbers what names the
+/// others.
+void remove_unused_tracks(Scene& scene);
+
+/// Adds tracks to a scene, each content once. Visibility tracks that stood in the scene are used too.
+class TrackSharing {
+ public:
+  explicit TrackSharing(Scene& scene);
+  /// As Scene::add_track, or a track of equal content.
+  TrackId add(Property property, Interpolation interpolation, std::span<const float> times_s,
+              std::span<const float> values);
+
+ private:
+  void remember(TrackId id);
+
+  Scene& scene_;
+  std::unordered_multimap<std::uint64_t, TrackId> by_hash_;  // looked up, never walked
+};
+
 /// When the object is first visible: none if never; 0 if it is visible before its first key (also without a
 /// visibility track).
 [[nodiscard]] std::optional<float> first_appearance_s(const Scene& scene, ObjectId object);
+
+/// When something first happens to objects, as profiles (timeline/profiles.h) write it: what is hidden at
+/// first starts when it appears, what is there starts when its look changes or it goes away, whichever is
+/// first.
+class ObjectStarts {
+ public:
+  explicit ObjectStarts(const Scene& scene);
+  /// None: it has neither a visibility track nor a look that changes. Infinity: it never appears.
+  [[nodiscard]] std::optional<float> of(ObjectId object) const;
+
+ private:
+  struct Visibility {
+    bool there_at_start = true;
+    float change_s = 0;  ///< infinity: never
+  };
+  const Scene& scene_;
+  std::vector<Visibility> visibility_;  // by track
+  std::vector<float> look_change_s_;    // by object; infinity: never; empty when no look changes
+};
 
 }  // namespace scenegen::timeline
