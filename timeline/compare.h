@@ -12,7 +12,10 @@ namespace scenegen::timeline {
 struct CompareOptions {
   float transform_tolerance = 1e-5F;  ///< relative to the size of the scene
   float color_tolerance = 1e-5F;
-  std::size_t most = 20;  ///< differences listed
+  /// Geometry is the same bits, unless one of these is above 0: then it is the same triangles in any order.
+  float geometry_tolerance = 0;  ///< of positions and texture coordinates, relative to their extent in a mesh
+  float normal_tolerance = 0;    ///< of each component of normals, tangents and vertex colors
+  std::size_t most = 20;         ///< differences listed
 };
 
 struct Difference {

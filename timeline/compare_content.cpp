@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "timeline/compare_report.h"
+#include "timeline/compare_surface.h"
 
 namespace scenegen::timeline {
 
@@ -83,10 +84,16 @@ const std::vector<ContentFault>& ContentComparer::mesh_faults(MeshId a, MeshId b
   return faults;
 }
 
+std::string ContentComparer::content_difference(const Geometry& a, const Geometry& b) const {
+  std::string difference = geometry_difference(a, b);
+  const bool exact = options_.geometry_tolerance <= 0.0F && options_.normal_tolerance <= 0.0F;
+  return exact || difference.empty() ? difference : surface_difference(a, b, options_);
+}
+
 bool ContentComparer::same_geometry(GeometryId a, GeometryId b) {
   const auto [found, is_new] = geometry_pairs_.try_emplace(pair_key(a.value, b.value), false);
   if (is_new) {
-    found->second = geometry_difference(a_.geometries[a.value], b_.geometries[b.value]).empty();
+    found->second = content_difference(a_.geometries[a.value], b_.geometries[b.value]).empty();
   }
   return found->second;
 }
@@ -172,7 +179,7 @@ std::string ContentComparer::what(const ContentFault& fault) const {
       return a_and_b("", text(a_.meshes[fault.a].primitives.size()) + " primitives",
                      text(b_.meshes[fault.b].primitives.size()));
     case ContentFault::Kind::geometry:
-      return geometry_difference(a_.geometries[fault.a], b_.geometries[fault.b]);
+      return content_difference(a_.geometries[fault.a], b_.geometries[fault.b]);
     case ContentFault::Kind::material:
       break;
   }

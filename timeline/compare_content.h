@@ -30,6 +30,7 @@ class ContentComparer {
   [[nodiscard]] std::string what(const ContentFault& fault) const;
 
  private:
+  [[nodiscard]] std::string content_difference(const Geometry& a, const Geometry& b) const;
   [[nodiscard]] bool same_geometry(GeometryId a, GeometryId b);
   [[nodiscard]] bool same_material(MaterialId a, MaterialId b);
   [[nodiscard]] std::string material_difference(MaterialId a, MaterialId b) const;

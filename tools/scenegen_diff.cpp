@@ -15,6 +15,8 @@ struct DiffRequest {
   std::string b;
   double tolerance = 1e-5;
   double color_tolerance = 1e-5;
+  double geometry_tolerance = 0;
+  double normal_tolerance = 0;
   std::uint64_t most = 20;
   Format format = Format::table;
   bool quiet = false;
@@ -55,6 +57,8 @@ Result<bool> diff(const DiffRequest& r) {
   timeline::CompareOptions options;
   options.transform_tolerance = static_cast<float>(r.tolerance);
   options.color_tolerance = static_cast<float>(r.color_tolerance);
+  options.geometry_tolerance = static_cast<float>(r.geometry_tolerance);
+  options.normal_tolerance = static_cast<float>(r.normal_tolerance);
   options.most = r.most;
   const timeline::Comparison comparison = timeline::compare(a->scene, b->scene, options);
   const std::uint64_t objects = a->scene.objects.size();
@@ -86,6 +90,11 @@ int diff_verb(std::span<const std::string> arguments) {
   options.add("--tolerance", real_value(request.tolerance, 0, 1, "X"),
               "of places and sizes, relative to the size of the scene");
   options.add("--color-tolerance", real_value(request.color_tolerance, 0, 1, "X"), "of colours");
+  options.add("--geometry-tolerance", real_value(request.geometry_tolerance, 0, 0.1, "X"),
+              "of vertex positions and texture coordinates, relative to their extent in the mesh; above 0, "
+              "triangles are compared in any order (files made with --draco: 1e-3)");
+  options.add("--normal-tolerance", real_value(request.normal_tolerance, 0, 0.5, "X"),
+              "of normals, tangents and vertex colours, likewise (files made with --draco: 0.03)");
   options.add("--most", whole_value<std::uint64_t>(request.most, 1, 1'000'000), "differences to list");
   options.group("Output");
   options.add("--format", format_value(request.format), "form of what is printed on stdout");

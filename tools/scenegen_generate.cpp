@@ -176,6 +176,11 @@ Report report(const GenerateRequest& r, const Made& made, const std::vector<std:
     add("objectsPerGroup", objects_per_group(made));
     add("singleObjectGroups", made.file.single_object_groups);
   }
+  if (r.file.draco.on) {
+    add("dracoGeometries", made.file.draco_geometries);
+    add("dracoBytes", made.file.draco_bytes);
+    add("dracoLeft", made.file.draco_left);
+  }
   add("arguments", arguments);
   add("notes", made.notes);
   add("seconds", made.seconds);

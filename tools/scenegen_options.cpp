@@ -154,7 +154,46 @@ void add_output_options(Options& options, GenerateRequest& r) {
                "in memory");
 }
 
+Value bits_value(std::uint32_t& target) {
+  Value value = whole_value<std::uint32_t>(target, 0, 30, "BITS");
+  value.range = "0, or 2 to 30";
+  value.parse = [&target, parse = std::move(value.parse)](std::string_view text) -> Result<void> {
+    const std::uint32_t before = target;
+    if (auto taken = parse(text); !taken) return taken;
+    if (target != 1) return {};
+    target = before;
+    return fail(ErrorKind::usage, "", "1 is out of range (0, or 2 to 30; nearest: 2)");
+  };
+  return value;
+}
+
 }  // namespace
+
+void add_draco_options(Options& options, gltf::DracoOptions& draco) {
+  options.group("Compression");
+  options.flag("--draco", draco.on,
+               "compress triangle meshes with KHR_draco_mesh_compression, where that makes them smaller; "
+               "rounds vertices to the bits below, of the extent of each mesh, and reorders them",
+               Role::content);
+  options.add("--draco-level", whole_value<std::uint32_t>(draco.level, 0, 10), "0 is fast, 10 is small",
+              Role::content);
+  options.add("--draco-position-bits", bits_value(draco.position_bits), "0 keeps them exact", Role::content);
+  options.add("--draco-normal-bits", bits_value(draco.normal_bits), "0 keeps them exact", Role::content);
+  options.add("--draco-texcoord-bits", bits_value(draco.texcoord_bits), "0 keeps them exact", Role::content);
+  options.add("--draco-color-bits", bits_value(draco.color_bits), "of vertex colours; 0 keeps them exact",
+              Role::content);
+  options.add("--draco-generic-bits", bits_value(draco.generic_bits), "of tangents; 0 keeps them exact",
+              Role::content);
+}
+
+std::vector<Conflict> conflicts_of_draco(const gltf::DracoOptions& draco) {
+  std::vector<Conflict> out;
+  if (draco.on) return out;
+  for (const char* name : {"--draco-level", "--draco-position-bits", "--draco-normal-bits",
+                           "--draco-texcoord-bits", "--draco-color-bits", "--draco-generic-bits"})
+    out.push_back({name, "needs --draco"});
+  return out;
+}
 
 Options generate_options(GenerateRequest& r) {
   Options options("scenegen",
@@ -166,6 +205,7 @@ Options generate_options(GenerateRequest& r) {
   add_extra_options(options, r);
   add_appearance_options(options, r);
   add_output_options(options, r);
+  add_draco_options(options, r.file.draco);
   options.group("General");
   options.add("--threads", whole_value<std::uint32_t>(r.threads, 0, limits::kMaxThreads),
               "0: one per processor; never changes the file");
@@ -175,7 +215,7 @@ Options generate_options(GenerateRequest& r) {
 }
 
 std::vector<Conflict> conflicts(const GenerateRequest& r) {
-  std::vector<Conflict> out;
+  std::vector<Conflict> out = conflicts_of_draco(r.file.draco);
   const auto refuse = [&out](std::initializer_list<const char*> names, const std::string& reason) {
     for (const char* name : names) out.push_back({name, reason});
   };

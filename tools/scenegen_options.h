@@ -41,6 +41,10 @@ struct GenerateRequest {
 /// Copies the seed and the threads to where the rooms look for them.
 void settle(GenerateRequest& request);
 
+/// The group "Compression"; conflicts_of_draco() tells which of its options need --draco.
+void add_draco_options(Options& options, gltf::DracoOptions& draco);
+[[nodiscard]] std::vector<Conflict> conflicts_of_draco(const gltf::DracoOptions& draco);
+
 [[nodiscard]] std::string layout_name(gltf::Layout layout);
 [[nodiscard]] std::string visibility_name(gltf::VisibilityEncoding encoding);
 

@@ -23,10 +23,23 @@ enum class VisibilityEncoding : std::uint8_t { scale, pointer, both };
 /// "Some thousand": below it every layout loads at once and `nodes` is what most tools like best (INTEROP 3).
 constexpr std::uint64_t kInstancesFrom = 2000;
 
+/// KHR_draco_mesh_compression. The defaults are those of draco_encoder. Bits: 0 keeps float32 as it is, else
+/// 2 to 30, of the largest extent of the attribute in the mesh (normals: of the octahedron).
+struct DracoOptions {
+  bool on = false;
+  std::uint32_t level = 7;  ///< 0 (fast) to 10 (small)
+  std::uint32_t position_bits = 11, normal_bits = 8, texcoord_bits = 10, color_bits = 8;
+  std::uint32_t generic_bits = 8;  ///< tangents
+};
+
 struct WriteOptions {
   Layout layout = Layout::automatic;
   VisibilityEncoding visibility = VisibilityEncoding::scale;
   unsigned threads = 1;  ///< a hint; one thread writes 1 M objects in 0.4 s, so it is not used yet
+  DracoOptions draco;
+
+  WriteOptions() = default;
+  WriteOptions(Layout l, VisibilityEncoding v, unsigned t = 1) : layout(l), visibility(v), threads(t) {}
 };
 
 struct WriteReport {
@@ -37,6 +50,8 @@ struct WriteReport {
   std::uint64_t instance_groups = 0;    ///< layout instances: EXT_mesh_gpu_instancing nodes
   std::uint64_t instanced_objects = 0;  ///< in them; divided by them: objects per group
   std::uint64_t single_object_groups = 0;
+  std::uint64_t draco_geometries = 0, draco_bytes = 0;  ///< compressed, and into how many bytes
+  std::uint64_t draco_left = 0;                         ///< not compressed (a note says why)
   std::vector<std::string> notes;  ///< "instances: 61 % of groups hold one object; wrote groups instead"
 };
 

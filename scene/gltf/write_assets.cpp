@@ -108,6 +108,22 @@ void add_material(const Material& material, float strength, tinygltf::Model& mod
   }
 }
 
+void add_draco(const DracoStream& stream, std::uint32_t view, tinygltf::Primitive& out) {
+  tinygltf::Value::Object ids;
+  const auto attribute = [&](const char* name, int id) {
+    if (id >= 0) ids[name] = tinygltf::Value(id);
+  };
+  attribute("POSITION", stream.position);
+  attribute("NORMAL", stream.normal);
+  attribute("TANGENT", stream.tangent);
+  attribute("TEXCOORD_0", stream.texcoord[0]);
+  attribute("TEXCOORD_1", stream.texcoord[1]);
+  attribute("COLOR_0", stream.color);
+  out.extensions["KHR_draco_mesh_compression"] =
+      tinygltf::Value({{"bufferView", tinygltf::Value(static_cast<int>(view))},
+                       {"attributes", tinygltf::Value(std::move(ids))}});
+}
+
 void add_mesh(const Scene& scene, const Mesh& mesh, const BufferPlan& buffer, tinygltf::Model& model) {
   tinygltf::Mesh& out = model.meshes.emplace_back();
   for (const Primitive& primitive : mesh.primitives) {
@@ -124,6 +140,8 @@ void add_mesh(const Scene& scene, const Mesh& mesh, const BufferPlan& buffer, ti
     attribute("COLOR_0", accessors.color);
     p.indices = accessors.indices;
     p.mode = static_cast<int>(scene.geometries[primitive.geometry.value].topology);  // the numbers are glTF's
+    if (const DracoStream* const stream = buffer.streams->find(primitive.geometry.value))
+      add_draco(*stream, buffer.draco[primitive.geometry.value].index, p);
     p.material = primitive.material.valid() ? static_cast<int>(primitive.material.value) : -1;
   }
 }
@@ -193,6 +211,10 @@ std::vector<float> emissive_strengths(const Scene& scene) {
 AssetTrees make_assets(const Scene& scene, const BufferPlan& buffer, const std::vector<float>& strengths) {
   AssetTrees trees;
   tinygltf::Model model;
+  if (buffer.streams->any()) {  // there is no uncompressed copy to fall back to, so it is required
+    trees.extensions_used.insert("KHR_draco_mesh_compression");
+    trees.extensions_required.insert("KHR_draco_mesh_compression");
+  }
   for (const Mesh& mesh : scene.meshes) add_mesh(scene, mesh, buffer, model);
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
     add_material(scene.materials[i], strengths[i], model, trees);

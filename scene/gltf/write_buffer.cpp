@@ -11,40 +11,35 @@ constexpr std::uint64_t align4(std::uint64_t n) {
 }
 
 /// Index 65535 means "restart" in 16 bits.
-bool fits_16_bits(const Geometry& geometry) {
-  return geometry.vertex_count() <= 65535;
-}
-
-std::vector<std::uint8_t> used_geometries(const Scene& scene) {
-  std::vector<std::uint8_t> used(scene.geometries.size(), 0);
-  for (const Mesh& mesh : scene.meshes) {
-    for (const Primitive& p : mesh.primitives) used[p.geometry.value] = 1;
-  }
-  return used;
+bool fits_16_bits(std::uint64_t vertices) {
+  return vertices <= 65535;
 }
 
 void plan_geometries(const Scene& scene, BufferPlan& plan) {
   const std::vector<std::uint8_t> used = used_geometries(scene);
   plan.geometries.resize(scene.geometries.size());
   int next = 0;
+  bool compressed = false;
   const auto stream = [&](const auto& data, ViewKind kind, int& accessor) {
     if (data.empty()) return;
     accessor = next++;
-    plan[kind].bytes += data.size() * sizeof(data[0]);
+    if (!compressed) plan[kind].bytes += data.size() * sizeof(data[0]);
   };
   for (std::size_t g = 0; g < scene.geometries.size(); ++g) {
     if (used[g] == 0) continue;
     const Geometry& geometry = scene.geometries[g];
     GeometryAccessors& accessors = plan.geometries[g];
+    compressed = plan.streams->find(g) != nullptr;
     stream(geometry.positions_m, ViewKind::positions, accessors.position);
     stream(geometry.normals, ViewKind::normals, accessors.normal);
     stream(geometry.tangents, ViewKind::tangents, accessors.tangent);
     stream(geometry.texcoords[0], ViewKind::texcoords_0, accessors.texcoord[0]);
     stream(geometry.texcoords[1], ViewKind::texcoords_1, accessors.texcoord[1]);
     stream(geometry.colors, ViewKind::colors, accessors.color);
-    if (geometry.indices.empty()) continue;
+    if (geometry.indices.empty() && !compressed) continue;
     accessors.indices = next++;
-    const bool narrow = fits_16_bits(geometry);
+    if (compressed) continue;
+    const bool narrow = fits_16_bits(geometry.vertex_count());
     plan[narrow ? ViewKind::indices_16 : ViewKind::indices_32].bytes +=
         geometry.indices.size() * (narrow ? 2U : 4U);
   }
@@ -103,11 +98,29 @@ std::uint32_t BufferPlan::accessor_of(const AnimationSampler& sampler) const {
   return 0;
 }
 
-BufferPlan plan_buffer(const Scene& scene, const NodePlan& nodes, const AnimationPlan& animation) {
+std::vector<std::uint8_t> used_geometries(const Scene& scene) {
+  std::vector<std::uint8_t> used(scene.geometries.size(), 0);
+  for (const Mesh& mesh : scene.meshes) {
+    for (const Primitive& p : mesh.primitives) used[p.geometry.value] = 1;
+  }
+  return used;
+}
+
+std::uint64_t plain_bytes(const Geometry& geometry) {
+  const auto of = [](const auto& data) { return std::uint64_t{data.size()} * sizeof(data[0]); };
+  return of(geometry.positions_m) + of(geometry.normals) + of(geometry.tangents) + of(geometry.texcoords[0]) +
+         of(geometry.texcoords[1]) + of(geometry.colors) +
+         geometry.indices.size() * (fits_16_bits(geometry.vertex_count()) ? 2U : 4U);
+}
+
+BufferPlan plan_buffer(const Scene& scene, const NodePlan& nodes, const AnimationPlan& animation,
+                       const DracoStreams& draco) {
   BufferPlan plan;
+  plan.streams = &draco;
   plan_geometries(scene, plan);
   plan_animation(scene, animation, plan);
   plan_instances(scene, nodes, plan);
+  for (const DracoStream& stream : draco.of_geometry) plan.draco.push_back({0, stream.bytes.size(), 0});
   for (const Image& image : scene.images) plan.images.push_back({0, image.bytes.size(), 0});
 
   const auto place = [&](BufferPlan::View& view) {
@@ -117,6 +130,7 @@ BufferPlan plan_buffer(const Scene& scene, const NodePlan& nodes, const Animatio
     plan.bytes = align4(plan.bytes + view.bytes);
   };
   for (BufferPlan::View& view : plan.views) place(view);
+  for (BufferPlan::View& view : plan.draco) place(view);
   for (BufferPlan::View& view : plan.images) place(view);
   return plan;
 }
@@ -149,6 +163,18 @@ class AccessorText {
     ++count_;
     return out_;
   }
+  /// An accessor whose data are in a Draco stream: no buffer view.
+  TextOut& open_compressed(int component_type, std::uint64_t count, std::string_view type) {
+    commas_.next().raw(R"({"componentType":)");
+    out_.number(component_type);
+    out_.raw(R"(,"count":)");
+    out_.number(count);
+    out_.raw(R"(,"type":")");
+    out_.raw(type);
+    out_.raw("\"");
+    ++count_;
+    return out_;
+  }
   void close() { out_.raw("}"); }
   void add(ViewKind kind, int component_type, std::uint64_t count, std::string_view type,
            std::uint64_t bytes) {
@@ -167,17 +193,39 @@ class AccessorText {
 
 constexpr int kUnsignedByte = 5121, kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
 
-void emit_geometry_accessors(const Geometry& geometry, AccessorText& accessors) {
-  const auto stream = [&](const auto& data, ViewKind kind, std::string_view type) {
-    if (!data.empty()) accessors.add(kind, kFloat, data.size(), type, data.size() * sizeof(data[0]));
-  };
-  const Box box = geometry.bounds();
-  const std::size_t vertices = geometry.positions_m.size();
-  TextOut& out = accessors.open(ViewKind::positions, kFloat, vertices, "VEC3", vertices * sizeof(glm::vec3));
+void emit_box(const Box& box, TextOut& out) {
   out.raw(R"(,"min":)");
   out.numbers(box.lo);
   out.raw(R"(,"max":)");
   out.numbers(box.hi);
+}
+
+/// The same accessors in the same order as emit_geometry_accessors(), of what the stream decodes to.
+void emit_compressed_accessors(const DracoStream& stream, AccessorText& accessors) {
+  const auto attribute = [&](int id, std::string_view type) {
+    if (id < 0) return;
+    accessors.open_compressed(kFloat, stream.vertices, type);
+    accessors.close();
+  };
+  emit_box(stream.box, accessors.open_compressed(kFloat, stream.vertices, "VEC3"));
+  accessors.close();
+  attribute(stream.normal, "VEC3");
+  attribute(stream.tangent, "VEC4");
+  attribute(stream.texcoord[0], "VEC2");
+  attribute(stream.texcoord[1], "VEC2");
+  attribute(stream.color, "VEC4");
+  accessors.open_compressed(fits_16_bits(stream.vertices) ? kUnsignedShort : kUnsignedInt, stream.indices,
+                            "SCALAR");
+  accessors.close();
+}
+
+void emit_geometry_accessors(const Geometry& geometry, AccessorText& accessors) {
+  const auto stream = [&](const auto& data, ViewKind kind, std::string_view type) {
+    if (!data.empty()) accessors.add(kind, kFloat, data.size(), type, data.size() * sizeof(data[0]));
+  };
+  const std::size_t vertices = geometry.positions_m.size();
+  emit_box(geometry.bounds(),
+           accessors.open(ViewKind::positions, kFloat, vertices, "VEC3", vertices * sizeof(glm::vec3)));
   accessors.close();
   stream(geometry.normals, ViewKind::normals, "VEC3");
   stream(geometry.tangents, ViewKind::tangents, "VEC4");
@@ -186,7 +234,7 @@ void emit_geometry_accessors(const Geometry& geometry, AccessorText& accessors) 
   stream(geometry.colors, ViewKind::colors, "VEC4");
   const std::size_t indices = geometry.indices.size();
   if (indices == 0) return;
-  if (fits_16_bits(geometry)) {
+  if (fits_16_bits(vertices)) {
     accessors.add(ViewKind::indices_16, kUnsignedShort, indices, "SCALAR", indices * 2);
   } else {
     accessors.add(ViewKind::indices_32, kUnsignedInt, indices, "SCALAR", indices * 4);
@@ -221,7 +269,7 @@ void emit_animation_accessors(const Scene& scene, const AnimationPlan& animation
 }
 
 void write_indices(const Geometry& geometry, bool narrow, ByteSink& sink) {
-  if (geometry.indices.empty() || fits_16_bits(geometry) != narrow) return;
+  if (geometry.indices.empty() || fits_16_bits(geometry.vertex_count()) != narrow) return;
   if (!narrow) return sink.write(geometry.indices.data(), geometry.indices.size() * 4);
   for (const std::uint32_t index : geometry.indices) {
     const auto value = static_cast<std::uint16_t>(index);
@@ -286,7 +334,7 @@ void write_instances(const Scene& scene, const NodePlan& nodes, ViewKind kind, B
 void write_geometries(const Scene& scene, const BufferPlan& plan, ViewKind kind, ByteSink& sink) {
   const auto put = [&](const auto& data) { sink.write(data.data(), data.size() * sizeof(data[0])); };
   for (std::size_t g = 0; g < scene.geometries.size(); ++g) {
-    if (plan.geometries[g].position < 0) continue;
+    if (plan.geometries[g].position < 0 || plan.streams->find(g) != nullptr) continue;
     const Geometry& geometry = scene.geometries[g];
     if (kind == ViewKind::positions) put(geometry.positions_m);
     if (kind == ViewKind::normals) put(geometry.normals);
@@ -305,7 +353,13 @@ void emit_accessors(const Scene& scene, const NodePlan& nodes, const AnimationPl
                     const BufferPlan& plan, TextOut& out) {
   AccessorText accessors(plan, out);
   for (std::size_t g = 0; g < scene.geometries.size(); ++g) {
-    if (plan.geometries[g].position >= 0) emit_geometry_accessors(scene.geometries[g], accessors);
+    if (plan.geometries[g].position < 0) continue;
+    const DracoStream* const stream = plan.streams->find(g);
+    if (stream != nullptr) {
+      emit_compressed_accessors(*stream, accessors);
+    } else {
+      emit_geometry_accessors(scene.geometries[g], accessors);
+    }
   }
   emit_animation_accessors(scene, animation, accessors);
   if (nodes.layout == Layout::instances) {
@@ -349,6 +403,7 @@ void emit_buffer_views(const Scene& scene, const BufferPlan& plan, TextOut& out)
   view(plan[ViewKind::indices_32], 0, kElementArrayBuffer);
   for (std::size_t kind = static_cast<std::size_t>(ViewKind::times); kind < kViewKinds; ++kind)
     view(plan.views[kind], 0, 0);
+  for (const BufferPlan::View& stream : plan.draco) view(stream, 0, 0);
   for (std::size_t i = 0; i < scene.images.size(); ++i) view(plan.images[i], 0, 0);
 }
 
@@ -369,6 +424,10 @@ void write_buffer(const Scene& scene, const NodePlan& nodes, const AnimationPlan
     if (kind >= ViewKind::translations && kind <= ViewKind::object_ids)
       write_instances(scene, nodes, kind, sink);
     if (kind == ViewKind::names && plan[kind].bytes != 0) write_front_coded(scene.objects.names, sink);
+    pad();
+  }
+  for (const DracoStream& stream : plan.streams->of_geometry) {
+    sink.write(stream.bytes.data(), stream.bytes.size());
     pad();
   }
   for (const Image& image : scene.images) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "scene/gltf/write_draco.h"
 #include "scene/gltf/write_plan.h"
 #include "scene/gltf/write_sink.h"
 #include "scene/gltf/write_text.h"
@@ -13,8 +14,8 @@
 
 namespace scenegen::gltf {
 
-/// One buffer view for each kind of data, in this order; images follow, one view each. An empty one is left
-/// out.
+/// One buffer view for each kind of data, in this order; Draco streams and images follow, one view each. An
+/// empty one is left out.
 enum class ViewKind : std::uint8_t {
   positions,
   normals,
@@ -47,10 +48,12 @@ struct BufferPlan {
     std::uint32_t index = 0;  ///< bufferViews[index]
   };
   std::array<View, kViewKinds> views;
+  std::vector<View> draco;  ///< of each geometry, empty where it is plain; none at all without Draco
   std::vector<View> images;
   std::uint32_t view_count = 0;
   std::uint64_t bytes = 0;  ///< a multiple of 4
 
+  const DracoStreams* streams = nullptr;
   std::vector<GeometryAccessors> geometries;
   std::uint32_t first_input = 0, first_byte_output = 0, first_scale_output = 0, first_value_output = 0,
                 first_instance = 0, accessor_count = 0;
@@ -65,8 +68,14 @@ struct BufferPlan {
   return 2U + (group.rotated ? 1U : 0U) + (group.scaled ? 1U : 0U);
 }
 
+/// Which geometries some mesh uses (1) and which none (0); the others are not written.
+[[nodiscard]] std::vector<std::uint8_t> used_geometries(const Scene& scene);
+/// Bytes of a geometry's vertices and indices without compression.
+[[nodiscard]] std::uint64_t plain_bytes(const Geometry& geometry);
+
+/// `draco` must outlive the plan.
 [[nodiscard]] BufferPlan plan_buffer(const Scene& scene, const NodePlan& nodes,
-                                     const AnimationPlan& animation);
+                                     const AnimationPlan& animation, const DracoStreams& draco);
 
 /// The elements of /accessors and /bufferViews, without the brackets.
 void emit_accessors(const Scene& scene, const NodePlan& nodes, const AnimationPlan& animation,

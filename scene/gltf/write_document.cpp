@@ -67,7 +67,8 @@ Document::Document(const Scene& scene, const WriteOptions& options)
       nodes_(plan_nodes(scene, options)),
       strengths_(emissive_strengths(scene)),
       channels_(plan_channels(scene, nodes_, strengths_)),
-      buffer_(plan_buffer(scene, nodes_, channels_.animation)),
+      draco_(encode_draco(scene, options.draco)),
+      buffer_(plan_buffer(scene, nodes_, channels_.animation, draco_)),
       assets_(make_assets(scene, buffer_, strengths_)) {
   const bool has_visibility =
       std::any_of(channels_.pointer_of_track.begin(), channels_.pointer_of_track.end(),
@@ -94,7 +95,23 @@ WriteReport Document::report() const {
     report.single_object_groups = nodes_.single_object_groups;
   }
   report.notes = nodes_.notes;
+  report_draco(report);
   return report;
+}
+
+void Document::report_draco(WriteReport& report) const {
+  for (const DracoStream& stream : draco_.of_geometry) {
+    report.draco_geometries += stream.used() ? 1 : 0;
+    report.draco_bytes += stream.bytes.size();
+  }
+  report.draco_left = draco_.larger + draco_.unfit;
+  if (draco_.larger > 0)
+    report.notes.push_back("draco: " + std::to_string(draco_.larger) +
+                           " of the geometries would be larger compressed; left as they are");
+  if (draco_.unfit > 0)
+    report.notes.push_back(
+        "draco: " + std::to_string(draco_.unfit) +
+        " of the geometries are no triangle lists that Draco gives back whole; left as they are");
 }
 
 void Document::emit_json(std::string_view buffer_uri, ByteSink& sink) const {

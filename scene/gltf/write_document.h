@@ -28,6 +28,8 @@ struct ChannelPlan {
 class Document {
  public:
   Document(const Scene& scene, const WriteOptions& options);
+  Document(const Document&) = delete;  // buffer_ points at draco_
+  Document& operator=(const Document&) = delete;
 
   /// The JSON text; `buffer_uri` empty for a .glb. The same at every call.
   void emit_json(std::string_view buffer_uri, ByteSink& sink) const;
@@ -37,6 +39,7 @@ class Document {
   [[nodiscard]] WriteReport report() const;
 
  private:
+  void report_draco(WriteReport& report) const;
   void emit_asset(TextOut& out) const;
   void emit_appearance(TextOut& out) const;
   void emit_extensions(TextOut& out) const;
@@ -57,6 +60,7 @@ class Document {
   NodePlan nodes_;
   std::vector<float> strengths_;
   ChannelPlan channels_;
+  DracoStreams draco_;
   BufferPlan buffer_;
   AssetTrees assets_;
 };

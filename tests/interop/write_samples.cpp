@@ -33,6 +33,20 @@ bool write_all(const scenegen::Scene& scene, const std::filesystem::path& folder
   return true;
 }
 
+bool write_compressed(const scenegen::Scene& scene, const std::filesystem::path& folder) {
+  for (const Layout layout : {Layout::nodes, Layout::instances}) {
+    scenegen::gltf::WriteOptions options(layout, VisibilityEncoding::scale);
+    options.draco.on = true;
+    const std::string name = layout == Layout::nodes ? "draco_nodes.gltf" : "draco_instances.glb";
+    const auto report = scenegen::gltf::write(scene, (folder / name).string(), options);
+    if (!report || report->draco_geometries == 0) {
+      std::cerr << "error: " << (report ? "nothing was compressed" : report.error().str()) << '\n';
+      return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -49,6 +63,7 @@ int main(int argc, char** argv) {
   one.tracks.clear();
   const bool ok = write_all(scenegen::testing::everything_scene(), folder, "every thing #1") &&
                   write_all(scenegen::testing::town_scene(2400, 64), folder, "town") &&
+                  write_compressed(scenegen::testing::town_scene(2400, 64), folder) &&
                   write_all(bare, folder, "bare") && write_all(one, folder, "one");
   return ok ? 0 : 1;
 }

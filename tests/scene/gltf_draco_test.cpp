@@ -1,4 +1,4 @@
-// KHR_draco_mesh_compression: streams made by the Draco encoder, whole, damaged and boasting.
+// KHR_draco_mesh_compression: streams made by the Draco encoder, whole, damaged and boasting; and our own.
 #include <catch2/catch.hpp>
 
 #include "scene/gltf/read.h"

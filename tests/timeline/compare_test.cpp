@@ -18,6 +18,40 @@ Geometry triangle(float size) {
   return g;
 }
 
+/// Four by four squares that lie in waves.
+Geometry sheet() {
+  Geometry g;
+  for (std::uint32_t y = 0; y <= 4; ++y) {
+    for (std::uint32_t x = 0; x <= 4; ++x) {
+      g.positions_m.emplace_back(x, y, 0.25F * static_cast<float>(x * y % 3));
+      g.normals.emplace_back(0, 0, 1);
+      g.texcoords[0].emplace_back(x, y);
+      g.colors.emplace_back(0.1F * static_cast<float>(x), 0.5F, 0.5F, 1.0F);
+      if (x == 4 || y == 4) continue;
+      const std::uint32_t a = y * 5 + x;
+      for (const std::uint32_t i : {a, a + 1, a + 5, a + 5, a + 1, a + 6}) g.indices.push_back(i);
+    }
+  }
+  return g;
+}
+
+/// The same triangles in another order, of other vertices, unindexed, turned.
+Geometry shuffled(const Geometry& g) {
+  Geometry out;
+  const std::size_t triangles = g.indices.size() / 3;
+  for (std::size_t k = 0; k < triangles; ++k) {
+    const std::size_t t = (k * 7 + 3) % triangles;
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const std::uint32_t i = g.indices[3 * t + (corner + k) % 3];
+      out.positions_m.push_back(g.positions_m[i]);
+      out.normals.push_back(g.normals[i]);
+      out.texcoords[0].push_back(g.texcoords[0][i]);
+      out.colors.push_back(g.colors[i]);
+    }
+  }
+  return out;
+}
+
 /// Six objects; one of each kind of thing that can be compared.
 Scene sample() {
   Scene s;
@@ -311,6 +345,52 @@ TEST_CASE("all differences are counted, some are listed") {
 TEST_CASE("empty scenes") {
   REQUIRE(compare(Scene{}, Scene{}).equal());
   REQUIRE(compare(sample(), Scene{}).difference_count == 6 + 2 + 1);
+}
+
+TEST_CASE("with a tolerance, geometry is its triangles") {
+  Scene a = sample();
+  a.geometries[0] = sheet();
+  Scene b = a;
+  b.geometries[0] = shuffled(sheet());
+  CHECK_FALSE(compare(a, b).equal());
+  CompareOptions options;
+  options.geometry_tolerance = 1e-3F;  // of 4 m
+  CHECK(compare(a, b, options).equal());
+  CHECK(compare(b, a, options).equal());
+
+  const auto differs = [&](const std::function<void(Geometry&)>& change) {
+    Scene changed = a;
+    changed.geometries[0] = shuffled(sheet());
+    change(changed.geometries[0]);
+    const bool one_way = compare(a, changed, options).equal(),
+               other_way = compare(changed, a, options).equal();
+    CHECK(one_way == other_way);
+    return !one_way;
+  };
+  CHECK_FALSE(differs([](Geometry& g) { g.positions_m[7].z += 0.0039F; }));
+  CHECK(differs([](Geometry& g) { g.positions_m[7].z += 0.0041F; }));
+  CHECK(differs([](Geometry& g) { std::swap(g.positions_m[3], g.positions_m[4]); }));  // seen from behind
+  CHECK(differs([](Geometry& g) { g.texcoords[0][9].x += 0.01F; }));
+  CHECK(differs([](Geometry& g) { g.normals[9] = {0, 1, 0}; }));
+  CHECK(differs([](Geometry& g) { g.colors[9].w = 0.9F; }));
+  CHECK(differs([](Geometry& g) { g.normals.clear(); }));
+  CHECK(differs([](Geometry& g) { g.topology = Topology::lines; }));
+  CHECK(differs([](Geometry& g) {  // a triangle is missing
+    g.positions_m.resize(93);
+    g.normals.resize(93);
+    g.texcoords[0].resize(93);
+    g.colors.resize(93);
+  }));
+  CHECK_FALSE(differs([](Geometry& g) {  // one without area more
+    for (int corner = 0; corner < 3; ++corner) {
+      g.positions_m.emplace_back(9, 9, 9);
+      g.normals.emplace_back(0, 0, 1);
+      g.texcoords[0].emplace_back(0, 0);
+      g.colors.emplace_back(1.0F);
+    }
+  }));
+  options.normal_tolerance = 0.2F;
+  CHECK_FALSE(differs([](Geometry& g) { g.colors[9].w = 0.9F; }));
 }
 
 }  // namespace

@@ -93,6 +93,11 @@ const Case kWrongCalls[] = {
     // Contradictions.
     {"--test-set 5 --grid 4x4", kUsage, "--grid: cannot be used with --test-set, which fixes the scene"},
     {"--windows off --window 1x1", kUsage, "--window: cannot be used with --windows off"},
+    {"--draco-level 9", kUsage, "--draco-level: needs --draco"},
+    {"--draco --draco-position-bits 1", kUsage,
+     "--draco-position-bits: 1 is out of range (0, or 2 to 30; nearest: 2)"},
+    {"--draco --draco-normal-bits 31", kUsage, "~--draco-normal-bits: 31 is out of range (0 to 30"},
+    {"--draco-levle 9", kUsage, "--draco-levle: unknown option (did you mean '--draco-level'?)"},
     {"--extra-model sphere:8", kUsage, "--extra-model: needs --extras of 1 or more"},
     {"--curve none --coherence 0.5", kUsage,
      "--coherence: cannot be used with --curve none, which makes a static scene"},
