@@ -1,0 +1,15 @@
+# cmake -DNPM=npm -DFOLDER=folder -P npm_ci.cmake: `npm ci` in the folder, unless what its lock file names is there already.
+set(installed ${FOLDER}/node_modules/installed.json)
+if(EXISTS ${installed})
+  file(SHA256 ${installed} before)
+  file(SHA256 ${FOLDER}/package-lock.json now)
+  if(before STREQUAL now)
+    return()
+  endif()
+endif()
+execute_process(COMMAND ${NPM} ci --ignore-scripts --no-audit --no-fund --prefer-offline
+                WORKING_DIRECTORY ${FOLDER} RESULT_VARIABLE code)
+if(NOT code EQUAL 0)
+  message(FATAL_ERROR "npm ci failed")
+endif()
+file(COPY_FILE ${FOLDER}/package-lock.json ${installed})
