@@ -65,7 +65,9 @@ void ProfileLooks::give(ObjectId object, std::uint32_t timeline, std::span<const
   const MeshId own = scene_.objects.mesh[object.value];
   const std::uint64_t key = (std::uint64_t{timeline} << 32) | own.value;
   const auto [known, fresh] = given_.try_emplace(key);
-  if (options_.color == ColorForm::swap) {
+  if (options_.color == ColorForm::swap && keys.size() == 1) {
+    scene_.objects.mesh[object.value] = swapped_mesh(own, keys.front().look);  // never seen otherwise
+  } else if (options_.color == ColorForm::swap) {
     if (fresh) known->second = mesh_track(own, keys).value;
     scene_.object_mesh_tracks.push_back({object, TrackId(known->second)});
   } else {

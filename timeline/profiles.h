@@ -67,10 +67,10 @@ struct ProfileResult {
 };
 
 /// Adds tracks, frames, meshes and materials to the ENDS of the scene's arrays; what stood there keeps its
-/// place and content, but for Objects::visibility, Objects::frame and (ColorForm::pointer) Objects::mesh of
-/// the objects that are named. Visibility that was there is replaced unless all activities of the object are
-/// move or operate. Objects with equal timelines share tracks, meshes and frames. Raises duration_s to the
-/// last finish (not beyond).
+/// place and content, but for Objects::visibility, Objects::frame and, of what is never seen in its own look
+/// or highlighted by ColorForm::pointer, Objects::mesh of the objects that are named. Visibility that was
+/// there is replaced unless all activities of the object are move or operate. Objects with equal timelines
+/// share tracks, meshes and frames. Raises duration_s to the last finish (not beyond).
 ///
 /// Highlights by `swap`: a mesh of the same geometry in a plain material without textures, which keeps
 /// double_sided and unlit; a see-through material stays so, a masked one keeps the texture that it is cut out

@@ -97,6 +97,11 @@ Result<Made> make(const GenerateRequest& r, const std::vector<std::string>& argu
     auto appearance = timeline::assign_appearance(scene, r.appearance, generated->exempt);
     if (!appearance) return forward_error(appearance);
     made.appearance = *appearance;
+    if (r.profile.profile != timeline::Profile::appear) {
+      const auto activities = timeline::activities_of_appearance(scene, curve_activities(r.profile));
+      auto profiled = timeline::apply_curve_profiles(scene, activities, r.profile.options);
+      if (!profiled) return forward_error(profiled);
+    }
   }
   progress.stage(r.dry_run ? "measuring" : "writing " + r.output);
   auto file = r.dry_run ? gltf::predict(scene, r.output, r.file) : gltf::write(scene, r.output, r.file);
@@ -159,6 +164,7 @@ Report report(const GenerateRequest& r, const Made& made, const std::vector<std:
   add("jsonBytes", made.file.json_bytes);
   add("seed", r.seed);
   if (made.appearance) {
+    add("profile", timeline::name(r.profile.profile));
     add("coherence", made.appearance->coherence_measured);
     add("coherenceGiven", made.appearance->coherence_given);
     add("displaced", made.appearance->displaced_objects);

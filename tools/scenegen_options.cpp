@@ -204,6 +204,7 @@ Options generate_options(GenerateRequest& r) {
   add_building_options(options, r);
   add_extra_options(options, r);
   add_appearance_options(options, r);
+  add_profile_options(options, r.profile, ProfileSource::curve);
   add_output_options(options, r);
   add_draco_options(options, r.file.draco);
   options.group("General");
@@ -233,8 +234,12 @@ std::vector<Conflict> conflicts(const GenerateRequest& r) {
   if (!r.town.windows) refuse({"--window"}, "cannot be used with --windows off");
   if (r.town.extras_per_floor == 0) refuse({"--extra-model"}, "needs --extras of 1 or more");
   if (!r.curve) {
-    refuse({"--order", "--cells", "--interval", "--hold", "--coherence", "--visibility"},
+    refuse({"--order", "--cells", "--interval", "--hold", "--coherence", "--visibility", "--profile",
+            "--profile-duration", "--highlight", "--color", "--drop-height", "--move-offset"},
            "cannot be used with --curve none, which makes a static scene");
+  } else {
+    for (Conflict& conflict : profile_conflicts(r.profile, std::span(&r.profile.profile, 1)))
+      out.push_back(std::move(conflict));
   }
   if (r.output == "-" && !r.dry_run) {
     refuse({"--format"},

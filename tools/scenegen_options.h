@@ -11,6 +11,7 @@
 #include "timeline/appearance.h"
 #include "tools/cli.h"
 #include "tools/output.h"
+#include "tools/profile_options.h"
 
 namespace scenegen::tools {
 
@@ -19,6 +20,7 @@ struct GenerateRequest {
   std::uint32_t test_set = 0;                                               ///< 0: none, a town
   std::optional<timeline::CurveKind> curve = timeline::CurveKind::hilbert;  ///< none: a static scene
   timeline::AppearanceOptions appearance;
+  ProfileRequest profile;
   gltf::WriteOptions file;
   std::uint64_t seed = 1;
   std::uint32_t threads = 0;  ///< 0: one per processor

@@ -23,7 +23,7 @@ struct PatchOptions {
 
 /// `scene` is what read() gave with `source`, plus tracks, frames, meshes (of the file's geometries) and
 /// materials behind those that were there, visibility tracks and frames of objects, mesh tracks, and objects
-/// that name one of the new meshes (material timelines by pointer). Writes
+/// that name one of the new meshes. Writes
 /// .glb or .gltf as gltf::write does. Our animation comes first, the file's own follow. Errors (bad_input):
 /// something that cannot be expressed, with the JSON pointer of the node and the reason (a skinned mesh and
 /// visibility by scale).

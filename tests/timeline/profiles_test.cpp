@@ -298,6 +298,13 @@ TEST_CASE("a swapped highlight keeps what its material must") {
   CHECK(leaves.base_color_texture.texture == TextureId(0));
 }
 
+TEST_CASE("what is never seen in its own look needs no track") {
+  Scene scene = row_of_boxes(1);
+  applied(scene, {act(0, Profile::temporary, 1, 2)});
+  CHECK(scene.object_mesh_tracks.empty());
+  CHECK(seen_at(scene, 0, {0, 1, 2}) == Seen{"-", "temporary", "-"});
+}
+
 TEST_CASE("pointer animates a copy of the material") {
   Scene scene = row_of_boxes(3);
   ProfileOptions options;
