@@ -1,5 +1,6 @@
 #include "scene/gltf/json.h"
 
+#include <charconv>
 #include <cstring>
 
 namespace scenegen::gltf::reading {
@@ -54,8 +55,16 @@ std::uint32_t get_index(Value& value, const Place& at) {
 
 double get_double(Value& value, const Place& at) {
   double out = 0;
+  const std::string_view token = value.raw_json_token();
   if (const auto code = value.get_double().get(out); code != simdjson::SUCCESS)
     reject_json(at, code, "a number");
+  // On demand, simdjson 3.0.1 reads numbers of 20 and more digits wrong: -0.07904822439840125109869401756656
+  // as -6.3e-14. What it has found to be a number, from_chars reads right.
+  constexpr std::size_t kManyDigits = 18;
+  if (token.size() > kManyDigits) {
+    double exact = 0;
+    if (std::from_chars(token.data(), token.data() + token.size(), exact).ec == std::errc()) out = exact;
+  }
   if (!std::isfinite(out)) reject(at, "wanted a finite number");
   return out;
 }

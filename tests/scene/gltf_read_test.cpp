@@ -342,3 +342,13 @@ TEST_CASE("files beside the document: percent-encoding, folders, what is refused
   CHECK(gltf::read(folder.string()).error().kind == ErrorKind::io);
   std::filesystem::remove_all(folder);
 }
+
+TEST_CASE("numbers of many digits are read right") {
+  const gltf::ReadResult read = read_text(
+      R"({"asset":{"version":"2.0"},"meshes":[{"primitives":[{"attributes":{}}]}],"nodes":[{"mesh":0,"translation":)"
+      R"([-0.07904822439840125109869401756656,123456789.12345678901234567890,0.00000000000000000000000012345678]}]})");
+  const glm::vec3 t = read.scene.objects.frame_from_object.at(0).translation_m;
+  CHECK(t.x == -0.0790482244F);
+  CHECK(t.y == 123456792.0F);
+  CHECK(t.z == 1.2345678e-25F);
+}
