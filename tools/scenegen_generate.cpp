@@ -143,7 +143,7 @@ std::string finished_line(const GenerateRequest& r, const Made& made) {
   if (made.file.layout == gltf::Layout::instances) {
     line += "instances: " + human_count(made.file.instance_groups) + " groups, " +
             human_real(objects_per_group(made), 1) + " objects per group, " +
-            human_count(made.file.single_object_groups) + " groups of one\n";
+            human_count(made.file.single_object_groups) + " objects alone\n";
   }
   return line;
 }

@@ -1,6 +1,7 @@
 // Document -> Scene, in steps. Private to scene/gltf.
 #pragma once
 
+#include <map>
 #include <unordered_map>
 #include <vector>
 
@@ -41,6 +42,60 @@ struct Motions {
 /// Also replaces the own scale of nodes whose scale track is a visibility track, by the one shown.
 [[nodiscard]] Motions build_motions(Document& document, Data& data, VisibilityTable& visibility,
                                     Scene& scene);
+
+/// What objects with looks show, and when (docs/FORMAT.md 5).
+class LookTable {
+ public:
+  LookTable(const Document& document, Data& data, VisibilityTable& visibility, Scene& scene);
+
+  /// One look of an object: the visibility of its node, and what it shows.
+  struct Look {
+    std::uint32_t visible = VisibilityTable::kAlways;
+    std::uint32_t mesh = kNone;
+    friend bool operator==(const Look&, const Look&) = default;
+  };
+  struct Resolved {
+    std::uint32_t visible = VisibilityTable::kAlways;
+    TrackId meshes;
+  };
+  /// Looks of which exactly one is shown at any time: the object's visibility is elsewhere. No track without
+  /// looks.
+  [[nodiscard]] TrackId always_one(const std::vector<Look>& looks, const Place& at);
+  /// Looks of which at most one is shown at any time. `visibility` and `meshes` are timelines of the scene
+  /// (or kNone); where they say the same as the animation they are what the writer had.
+  [[nodiscard]] Resolved at_most_one(const std::vector<Look>& looks, std::uint32_t visibility,
+                                     std::uint32_t meshes, const Place& at);
+  /// Groups whose timelines are missing or say something else than the animation does.
+  [[nodiscard]] std::uint64_t disagreements() const { return disagreements_; }
+
+ private:
+  /// Which look is shown from when on; kNone: none.
+  struct State {
+    float time_s;
+    std::uint32_t look;
+  };
+  /// Keys of a mesh track, in numbers of looks.
+  struct Course {
+    std::uint32_t visible = VisibilityTable::kAlways;
+    std::vector<float> times_s;
+    std::vector<std::uint32_t> looks;
+    std::map<std::vector<std::uint32_t>, TrackId> tracks;  ///< by the meshes of the looks
+  };
+  [[nodiscard]] std::vector<State> states_of(const std::vector<Look>& looks, const Place& at);
+  [[nodiscard]] Course from_states(const std::vector<State>& states);
+  [[nodiscard]] bool from_timelines(const std::vector<State>& states, std::uint32_t visibility,
+                                    std::uint32_t meshes, std::size_t look_count, Course& out);
+  [[nodiscard]] const Timeline* timeline(std::uint32_t index, bool is_looks) const;
+  [[nodiscard]] TrackId track_of(Course& course, const std::vector<Look>& looks, const Place& at);
+
+  const Document& document_;
+  Data& data_;
+  VisibilityTable& visibility_;
+  Scene& scene_;
+  std::map<std::vector<std::uint32_t>, Course> courses_;
+  std::map<std::vector<float>, TrackId> tracks_;  ///< by times and values
+  std::uint64_t disagreements_ = 0;
+};
 
 /// Where each object comes from, for SourceDocument.
 struct Origins {

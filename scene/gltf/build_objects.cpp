@@ -1,6 +1,5 @@
 // Nodes -> frames, objects, cameras.
 #include <algorithm>
-#include <map>
 
 #include "scene/gltf/build.h"
 #include "scene/gltf/names.h"
@@ -10,7 +9,7 @@ namespace scenegen::gltf::reading {
 
 namespace {
 
-constexpr std::uint8_t kInScene = 1, kUsed = 2, kUsedBelow = 4, kOwnFrame = 8, kLook = 16;
+constexpr std::uint8_t kInScene = 1, kUsed = 2, kUsedBelow = 4, kOwnFrame = 8, kLook = 16, kFurtherLook = 32;
 
 class ObjectBuilder {
  public:
@@ -21,7 +20,8 @@ class ObjectBuilder {
         hierarchy_(hierarchy),
         motions_(motions),
         visibility_(visibility),
-        scene_(scene) {}
+        scene_(scene),
+        looks_(document, data, visibility, scene) {}
   Origins build();
 
  private:
@@ -42,8 +42,16 @@ class ObjectBuilder {
     const NodeDetail* const d = detail(node);
     return d != nullptr && d->instanced;
   }
+  /// A node of ours that shows one look of objects in a group; look 0 is the one that says what they are.
+  [[nodiscard]] bool shows_group_look(std::uint32_t node) const {
+    const NodeDetail* const d = detail(node);
+    if (!document_.ours || d == nullptr || d->look == kNone || (flags_[node] & kLook) != 0) return false;
+    const bool indexed = d->instanced ? d->object_id != kNone : d->object != kNone;
+    return document_.nodes[node].mesh != kNone && indexed && (d->look > 0 || d->mesh != kNone);
+  }
   [[nodiscard]] bool is_object(std::uint32_t node) const {
-    return (flags_[node] & kLook) == 0 && (document_.nodes[node].mesh != kNone || has_looks(node));
+    return (flags_[node] & (kLook | kFurtherLook)) == 0 &&
+           (document_.nodes[node].mesh != kNone || has_looks(node));
   }
   [[nodiscard]] Place node_place(std::uint32_t node) const { return nodes_.at(node); }
 
@@ -58,6 +66,9 @@ class ObjectBuilder {
   void put(std::uint64_t id, std::uint32_t node, std::uint32_t instance, const Transform& transform);
   std::uint64_t next_id(std::uint32_t given, const Place& at);
   void add_looks(std::uint32_t node, ObjectId object);
+  void add_look_node(std::uint64_t object, std::uint32_t node);
+  void add_further_look(std::uint32_t node);
+  void resolve_looks();
   void add_cameras();
   void add_names();
   void finish_visibility();
@@ -78,13 +89,20 @@ class ObjectBuilder {
   std::vector<bool> taken_;
   Origins origins_;
   std::vector<std::uint32_t> object_visibility_;  ///< of the VisibilityTable
-  std::map<std::vector<float>, TrackId> mesh_tracks_;
+  LookTable looks_;
+  struct LookNode {
+    std::uint32_t node;
+    std::uint32_t next;  ///< of the same object
+  };
+  std::vector<LookNode> look_nodes_;
+  std::vector<std::uint32_t> look_of_object_;  ///< the last one; empty when there are none
 };
 
 void ObjectBuilder::mark_used() {
   flags_.assign(document_.nodes.size(), 0);
   for (const std::uint32_t node : hierarchy_.order) {
     flags_[node] |= kInScene;
+    if (shows_group_look(node) && detail(node)->look > 0) flags_[node] |= kFurtherLook | kUsed;
     if (!has_looks(node)) continue;
     const Node& owner = document_.nodes[node];
     for (std::uint32_t k = 0; k < owner.child_count; ++k) {
@@ -215,7 +233,9 @@ void ObjectBuilder::put(std::uint64_t id, std::uint32_t node, std::uint32_t inst
   const Node& n = document_.nodes[node];
   scene_.objects.frame_from_object[id] = transform;
   scene_.objects.frame[id] = frame_[node];
-  scene_.objects.mesh[id] = MeshId(n.mesh != kNone ? n.mesh : detail(node)->mesh);
+  const bool group_look = shows_group_look(node);
+  scene_.objects.mesh[id] = MeshId(n.mesh != kNone && !group_look ? n.mesh : detail(node)->mesh);
+  if (group_look) add_look_node(id, node);
   object_visibility_[id] = visible_[node];
   origins_.node[id] = node;
   if (!origins_.instance.empty()) origins_.instance[id] = instance;
@@ -258,11 +278,14 @@ void ObjectBuilder::add_objects(std::uint64_t count) {
   if (!origins_.instance.empty()) origins_.instance.resize(count);
   if (explicit_ids_) taken_.resize(count);
   for (std::uint32_t node = 0; node < flags_.size(); ++node) {
-    if ((flags_[node] & kUsed) == 0 || !is_object(node)) continue;
+    if ((flags_[node] & kUsed) == 0) continue;
+    if ((flags_[node] & kFurtherLook) != 0) add_further_look(node);
+    if (!is_object(node)) continue;
     const Node& n = document_.nodes[node];
     const NodeDetail* const d = detail(node);
     const Place at = node_place(node);
     check_index(n.mesh != kNone ? n.mesh : d->mesh, scene_.meshes.size(), "meshes", at.key("mesh"));
+    if (shows_group_look(node)) check_index(d->mesh, scene_.meshes.size(), "meshes", at.key("extras"));
     if (instanced(node)) {
       add_instances(node);
       continue;
@@ -271,65 +294,85 @@ void ObjectBuilder::add_objects(std::uint64_t count) {
     put(id, node, 0, (flags_[node] & kOwnFrame) != 0 ? Transform() : n.local);
     if (has_looks(node)) add_looks(node, ObjectId(id));
   }
+  resolve_looks();
 }
 
 /// The children's visibility tracks, of which exactly one shows at any time, become one mesh track.
 void ObjectBuilder::add_looks(std::uint32_t node, ObjectId object) {
-  struct Event {
-    float time_s;
-    std::uint32_t child;
-    std::uint8_t shown;
-  };
   const Node& n = document_.nodes[node];
-  std::vector<Event> events;
-  std::vector<bool> showing(n.child_count);
-  std::uint64_t shown_count = 0;
-  std::uint64_t shown_sum = 0;  // of child numbers: the child, when one is shown
+  std::vector<LookTable::Look> looks;
   for (std::uint32_t k = 0; k < n.child_count; ++k) {
     const std::uint32_t child = document_.children[n.first_child + k];
     if ((flags_[child] & kLook) == 0) continue;
-    check_index(document_.nodes[child].mesh, scene_.meshes.size(), "meshes", node_place(child).key("mesh"));
-    const std::uint32_t id = own_visibility(child);
-    const auto times = visibility_.times_s(id);
-    const auto values = visibility_.shown(id);
-    for (std::size_t i = 0; i < times.size(); ++i) events.push_back({times[i], k, values[i]});
-    showing[k] = id == VisibilityTable::kAlways || values.front() != 0;
-    if (showing[k]) {
-      ++shown_count;
-      shown_sum += k;
-    }
+    const std::uint32_t mesh = document_.nodes[child].mesh;
+    check_index(mesh, scene_.meshes.size(), "meshes", node_place(child).key("mesh"));
+    looks.push_back({own_visibility(child), mesh});
   }
-  std::stable_sort(events.begin(), events.end(),
-                   [](const Event& a, const Event& b) { return a.time_s < b.time_s; });
-  std::vector<float> times, values;
-  for (std::size_t i = 0; i < events.size();) {
-    const float now = events[i].time_s;
-    for (; i < events.size() && events[i].time_s == now; ++i) {
-      const bool shown = events[i].shown != 0;
-      if (shown == showing[events[i].child]) continue;
-      showing[events[i].child] = shown;
-      shown_count += shown ? 1 : -1;
-      shown_sum += shown ? events[i].child : -std::uint64_t{events[i].child};
-    }
-    if (shown_count != 1) {
-      reject(node_place(node), std::to_string(shown_count) + " looks are shown at " + std::to_string(now) +
-                                   " s; wanted exactly one");
-    }
-    times.push_back(now);
-    values.push_back(static_cast<float>(document_.nodes[document_.children[n.first_child + shown_sum]].mesh));
+  const TrackId track = looks_.always_one(looks, node_place(node));
+  if (track.valid()) scene_.object_mesh_tracks.push_back({object, track});
+}
+
+/// Notes that `node` shows a look of the object.
+void ObjectBuilder::add_look_node(std::uint64_t object, std::uint32_t node) {
+  if (look_of_object_.empty()) look_of_object_.assign(scene_.objects.size(), kNone);
+  look_nodes_.push_back({node, look_of_object_[object]});
+  look_of_object_[object] = static_cast<std::uint32_t>(look_nodes_.size() - 1);
+}
+
+/// A node of ours that shows look 1, 2, … of objects whose look 0 is another node.
+void ObjectBuilder::add_further_look(std::uint32_t node) {
+  const NodeDetail& d = *detail(node);
+  const Place here = node_place(node);
+  check_index(document_.nodes[node].mesh, scene_.meshes.size(), "meshes", here.key("mesh"));
+  if (!explicit_ids_) reject(here, "a look of an object, but no object has an index");
+  std::vector<std::uint32_t> ids{d.object};
+  if (instanced(node)) ids = data_.integers(d.object_id, here.key("_OBJECT_ID"));
+  for (const std::uint32_t id : ids) {
+    check_index(id, scene_.objects.size(), "objects", here);
+    add_look_node(id, node);
   }
-  if (times.empty() && shown_count > 1)
-    reject(node_place(node), "several looks are shown; wanted exactly one");
-  if (times.empty() && shown_count == 0) return;  // no looks at all
-  if (times.empty()) {
-    times.push_back(0.0F);
-    values.push_back(static_cast<float>(document_.nodes[document_.children[n.first_child + shown_sum]].mesh));
+}
+
+/// Visibility and mesh tracks of objects whose looks are nodes of groups.
+void ObjectBuilder::resolve_looks() {
+  struct Numbered {
+    std::uint32_t number;
+    std::uint32_t node;
+  };
+  std::vector<Numbered> nodes;
+  std::vector<LookTable::Look> looks, last;
+  LookTable::Resolved resolved;
+  std::uint32_t last_first = kNone;  // neighbours are mostly of one group
+  for (std::uint32_t object = 0; object < look_of_object_.size(); ++object) {
+    nodes.clear();
+    for (std::uint32_t i = look_of_object_[object]; i != kNone; i = look_nodes_[i].next)
+      nodes.push_back({detail(look_nodes_[i].node)->look, look_nodes_[i].node});
+    if (nodes.empty()) continue;
+    std::ranges::sort(nodes, {}, &Numbered::number);
+    const Place here = node_place(nodes.front().node);
+    looks.clear();
+    for (std::uint32_t k = 0; k < nodes.size(); ++k) {
+      if (nodes[k].number != k) {
+        reject(here, "object " + std::to_string(object) + " has " + std::to_string(nodes.size()) +
+                         " looks, but none or two with number " + std::to_string(k));
+      }
+      looks.push_back({visible_[nodes[k].node], document_.nodes[nodes[k].node].mesh});
+    }
+    const std::uint32_t first = nodes.front().node;
+    if (first != last_first || looks != last) {
+      const NodeDetail& d = *detail(first);
+      resolved = looks_.at_most_one(looks, d.visibility, d.looks, here);
+      last_first = first;
+      last = looks;
+    }
+    object_visibility_[object] = resolved.visible;
+    scene_.object_mesh_tracks.push_back({ObjectId(object), resolved.meshes});
   }
-  std::vector<float> key = times;
-  key.insert(key.end(), values.begin(), values.end());
-  const auto [entry, fresh] = mesh_tracks_.emplace(std::move(key), TrackId());
-  if (fresh) entry->second = scene_.add_track(Property::mesh, Interpolation::step, times, values);
-  scene_.object_mesh_tracks.push_back({object, entry->second});
+  std::ranges::sort(scene_.object_mesh_tracks, {}, &ObjectMeshTrack::object);
+  if (looks_.disagreements() > 0) {
+    document_.ignored.add(nodes_, "timelines of looks that are missing or differ from the animation",
+                          looks_.disagreements());
+  }
 }
 
 void ObjectBuilder::add_cameras() {
@@ -350,7 +393,7 @@ void ObjectBuilder::add_names() {
   const std::size_t count = scene_.objects.size();
   UniqueNames names(scene_.objects.names, count);
   const std::uint32_t shown = document_.scene == kNone ? 0 : document_.scene;
-  if (document_.ours && !document_.scenes.empty() && document_.names[shown].view != kNone) {
+  if (document_.ours && !document_.scenes.empty() && document_.scene_extras[shown].names.view != kNone) {
     const Place scenes = root_.key("scenes");
     const Place scene = scenes.at(shown);
     const Place extras = scene.key("extras");
@@ -359,11 +402,11 @@ void ObjectBuilder::add_names() {
     // Tools that rebuild buffer views without knowing our extras (gltf-transform copy) leave a table that
     // points anywhere: the scene is whole without it, so it loses its names and says so.
     try {
-      if (document_.names[shown].count != count) {
-        reject(at.key("count"), std::to_string(document_.names[shown].count) + " names of " +
+      if (document_.scene_extras[shown].names.count != count) {
+        reject(at.key("count"), std::to_string(document_.scene_extras[shown].names.count) + " names of " +
                                     std::to_string(count) + " objects");
       }
-      const NameTable table = decode_names(document_.names[shown], data_, at);
+      const NameTable table = decode_names(document_.scene_extras[shown].names, data_, at);
       scene_.objects.names.reserve(count, table.byte_count());
       return names.add_all(count, [&](std::size_t i) { return table[i]; });
     } catch (const Fault& fault) {

@@ -71,6 +71,7 @@ struct NodeDetail {
   std::uint32_t translation = kNone, rotation = kNone, scale = kNone,
                 object_id = kNone;                                          ///< accessors of the instances
   std::uint32_t object = kNone, look = kNone, mesh = kNone, frame = kNone;  ///< extras.scenegen
+  std::uint32_t visibility = kNone, looks = kNone;  ///< extras.scenegen: into the scene's timelines
 };
 struct Node {
   Transform local;
@@ -87,6 +88,17 @@ struct SceneRecord {
 struct NameList {
   std::uint32_t view = kNone;
   std::uint64_t count = 0;
+};
+/// A visibility track or a mesh track behind the looks of a group: keys in Document::timeline_times_s and
+/// timeline_values.
+struct Timeline {
+  std::uint64_t first = 0, count = 0;
+  bool is_looks = false;  ///< values are numbers of looks, else 0 or 1
+};
+/// scenes[i].extras.scenegen
+struct SceneExtras {
+  NameList names;
+  std::uint32_t first_timeline = 0, timeline_count = 0;
 };
 
 enum class Path : std::uint8_t { none, translation, rotation, scale, visibility, base_color, emissive };
@@ -135,7 +147,10 @@ struct Document {
   std::vector<SceneRecord> scenes;
   std::vector<std::uint32_t> scene_roots;
   std::uint32_t scene = kNone;
-  std::vector<NameList> names;  ///< by scene
+  std::vector<SceneExtras> scene_extras;  ///< by scene
+  std::vector<Timeline> timelines;
+  std::vector<float> timeline_times_s;
+  std::vector<std::uint32_t> timeline_values;
   std::vector<AnimationSampler> animation_samplers;
   std::vector<Channel> channels;
   bool animated = false;  ///< animations[0] is there

@@ -61,6 +61,10 @@ void parse_node_extras(Value value, const Place& at, Node& node, Document& out) 
         detail.mesh = get_index(w, q);
       } else if (key == "frame") {
         detail.frame = get_index(w, q);
+      } else if (key == "visibility") {
+        detail.visibility = get_index(w, q);
+      } else if (key == "looks") {
+        detail.looks = get_index(w, q);
       }
     });
   });

@@ -211,10 +211,69 @@ void parse_cameras(Value value, const Place& at, Document& out) {
   });
 }
 
+namespace {
+
+void parse_name_list(Value value, const Place& at, NameList& names) {
+  each_field(value, at, [&](std::string_view key, Value& v, const Place& p) {
+    if (key == "bufferView") {
+      names.view = get_index(v, p);
+    } else if (key == "count") {
+      names.count = get_count(v, p);
+    } else if (key == "encoding" && get_string(v, p) != "front-coded-utf8") {
+      reject(p, "wanted \"front-coded-utf8\"");
+    }
+  });
+}
+
+void parse_timeline(Value value, const Place& at, Document& out) {
+  Timeline timeline;
+  timeline.first = out.timeline_times_s.size();
+  std::uint64_t values = 0;
+  each_field(value, at, [&](std::string_view key, Value& v, const Place& p) {
+    if (key == "times") {
+      each_element(v, p, [&](Value& w, const Place& q) {
+        const float time_s = get_float(w, q);
+        const bool first = out.timeline_times_s.size() == timeline.first;
+        if (first ? !(time_s >= 0.0F) : !(time_s > out.timeline_times_s.back()))
+          reject(q, first ? "negative" : "times do not increase");
+        out.timeline_times_s.push_back(time_s);
+      });
+    } else if (key == "shown" || key == "looks") {
+      if (values != 0) reject(p, "a timeline has either \"shown\" or \"looks\"");
+      timeline.is_looks = key == "looks";
+      each_element(v, p, [&](Value& w, const Place& q) {
+        out.timeline_values.push_back(
+            static_cast<std::uint32_t>(get_count(w, q, timeline.is_looks ? kNone - 1 : 1)));
+        ++values;
+      });
+    }
+  });
+  timeline.count = out.timeline_times_s.size() - timeline.first;
+  if (timeline.count == 0 || values != timeline.count) {
+    reject(at, std::to_string(timeline.count) + " times and " + std::to_string(values) +
+                   " values; wanted as many of both, at least one");
+  }
+  out.timelines.push_back(timeline);
+}
+
+void parse_scene_extras(Value value, const Place& at, SceneExtras& extras, Document& out) {
+  each_field(value, at, [&](std::string_view key, Value& v, const Place& p) {
+    if (key == "names") {
+      parse_name_list(v, p, extras.names);
+    } else if (key == "timelines") {
+      extras.first_timeline = static_cast<std::uint32_t>(out.timelines.size());
+      each_element(v, p, [&](Value& w, const Place& q) { parse_timeline(w, q, out); });
+      extras.timeline_count = static_cast<std::uint32_t>(out.timelines.size()) - extras.first_timeline;
+    }
+  });
+}
+
+}  // namespace
+
 void parse_scenes(Value value, const Place& at, Document& out) {
   each_element(value, at, [&](Value& element, const Place& place) {
     SceneRecord scene;
-    NameList names;
+    SceneExtras extras;
     each_field(element, place, [&](std::string_view key, Value& v, const Place& p) {
       if (key == "nodes") {
         scene.first_root = static_cast<std::uint32_t>(out.scene_roots.size());
@@ -225,24 +284,12 @@ void parse_scenes(Value value, const Place& at, Document& out) {
                    [&](std::string_view name, Value&, const Place& q) { ignore_extension(name, q, out); });
       } else if (key == "extras" && is_object(v)) {
         each_field(v, p, [&](std::string_view owner, Value& w, const Place& q) {
-          if (owner != "scenegen" || !is_object(w)) return;
-          each_field(w, q, [&](std::string_view inner, Value& x, const Place& r) {
-            if (inner != "names") return;
-            each_field(x, r, [&](std::string_view field, Value& y, const Place& s) {
-              if (field == "bufferView") {
-                names.view = get_index(y, s);
-              } else if (field == "count") {
-                names.count = get_count(y, s);
-              } else if (field == "encoding" && get_string(y, s) != "front-coded-utf8") {
-                reject(s, "wanted \"front-coded-utf8\"");
-              }
-            });
-          });
+          if (owner == "scenegen" && is_object(w)) parse_scene_extras(w, q, extras, out);
         });
       }
     });
     out.scenes.push_back(scene);
-    out.names.push_back(names);
+    out.scene_extras.push_back(extras);
   });
 }
 

@@ -15,8 +15,8 @@ namespace scenegen::gltf {
 enum class Layout : std::uint8_t {
   automatic,  ///< instances from kInstancesFrom objects on, else nodes
   nodes,      ///< a node and a channel per object
-  groups,     ///< a node per object under one animated parent per visibility track
-  instances,  ///< per (visibility track, mesh) one EXT_mesh_gpu_instancing node
+  groups,     ///< a node per object under one animated parent per (frame, visibility track, mesh track)
+  instances,  ///< per (frame, visibility track, mesh track, mesh) one EXT_mesh_gpu_instancing node a look
 };
 enum class VisibilityEncoding : std::uint8_t { scale, pointer, both };
 
@@ -46,10 +46,10 @@ struct WriteReport {
   std::uint64_t bytes = 0;  ///< all files together
   std::uint64_t json_bytes = 0;
   std::uint64_t nodes = 0, channels = 0, samplers = 0, accessors = 0;
-  Layout layout = Layout::nodes;        ///< the one used
-  std::uint64_t instance_groups = 0;    ///< layout instances: EXT_mesh_gpu_instancing nodes
-  std::uint64_t instanced_objects = 0;  ///< in them; divided by them: objects per group
-  std::uint64_t single_object_groups = 0;
+  Layout layout = Layout::nodes;           ///< the one used
+  std::uint64_t instance_groups = 0;       ///< layout instances: objects that share an instancing node a look
+  std::uint64_t instanced_objects = 0;     ///< in them; divided by them: objects per group
+  std::uint64_t single_object_groups = 0;  ///< beside them: objects alone, with nodes of their own
   std::uint64_t draco_geometries = 0, draco_bytes = 0;  ///< compressed, and into how many bytes
   std::uint64_t draco_left = 0;                         ///< not compressed (a note says why)
   std::vector<std::string> notes;  ///< "instances: 61 % of groups hold one object; wrote groups instead"

@@ -46,13 +46,13 @@ void plan_geometries(const Scene& scene, BufferPlan& plan) {
   plan.accessor_count = static_cast<std::uint32_t>(next);
 }
 
-std::uint64_t value_floats(const Scene& scene, const ValueOutput& output) {
-  const std::uint64_t parts = file_interpolation(scene, output.track) == Interpolation::cubic_spline ? 3 : 1;
-  return FileKeys(scene, output.track).count * parts * width(scene.tracks[output.track.value].property);
+std::uint64_t value_floats(const FileTracks& tracks, const ValueOutput& output) {
+  const std::uint64_t parts = file_interpolation(tracks, output.track) == Interpolation::cubic_spline ? 3 : 1;
+  return FileKeys(tracks, output.track).count * parts * width(tracks[output.track].property);
 }
 
-void plan_animation(const Scene& scene, const AnimationPlan& animation, BufferPlan& plan) {
-  const auto keys_of = [&](TrackId track) { return std::uint64_t{FileKeys(scene, track).count}; };
+void plan_animation(const FileTracks& tracks, const AnimationPlan& animation, BufferPlan& plan) {
+  const auto keys_of = [&](TrackId track) { return std::uint64_t{FileKeys(tracks, track).count}; };
   plan.first_input = plan.accessor_count;
   for (const TrackId track : animation.inputs) plan[ViewKind::times].bytes += keys_of(track) * 4;
   plan.first_byte_output = plan.first_input + static_cast<std::uint32_t>(animation.inputs.size());
@@ -65,7 +65,7 @@ void plan_animation(const Scene& scene, const AnimationPlan& animation, BufferPl
   plan.first_value_output =
       plan.first_scale_output + static_cast<std::uint32_t>(animation.scale_outputs.size());
   for (const ValueOutput& o : animation.value_outputs)
-    plan[ViewKind::values].bytes += value_floats(scene, o) * 4;
+    plan[ViewKind::values].bytes += value_floats(tracks, o) * 4;
   plan.accessor_count = plan.first_value_output + static_cast<std::uint32_t>(animation.value_outputs.size());
 }
 
@@ -118,7 +118,7 @@ BufferPlan plan_buffer(const Scene& scene, const NodePlan& nodes, const Animatio
   BufferPlan plan;
   plan.streams = &draco;
   plan_geometries(scene, plan);
-  plan_animation(scene, animation, plan);
+  plan_animation(nodes.tracks, animation, plan);
   plan_instances(scene, nodes, plan);
   for (const DracoStream& stream : draco.of_geometry) plan.draco.push_back({0, stream.bytes.size(), 0});
   for (const Image& image : scene.images) plan.images.push_back({0, image.bytes.size(), 0});
@@ -241,29 +241,30 @@ void emit_geometry_accessors(const Geometry& geometry, AccessorText& accessors) 
   }
 }
 
-void emit_animation_accessors(const Scene& scene, const AnimationPlan& animation, AccessorText& accessors) {
+void emit_animation_accessors(const FileTracks& tracks, const AnimationPlan& animation,
+                              AccessorText& accessors) {
   for (const TrackId track : animation.inputs) {
-    const FileKeys keys(scene, track);
+    const FileKeys keys(tracks, track);
     TextOut& out =
         accessors.open(ViewKind::times, kFloat, keys.count, "SCALAR", std::uint64_t{keys.count} * 4);
     out.raw(R"(,"min":[)");
-    out.number(file_time_s(scene, track, keys, 0));
+    out.number(file_time_s(tracks, track, keys, 0));
     out.raw(R"(],"max":[)");
-    out.number(file_time_s(scene, track, keys, keys.count - 1));
+    out.number(file_time_s(tracks, track, keys, keys.count - 1));
     out.raw("]");
     accessors.close();
   }
   for (const std::uint32_t p : animation.byte_outputs) {
-    const std::uint64_t count = FileKeys(scene, animation.patterns[p].track).count;
+    const std::uint64_t count = FileKeys(tracks, animation.patterns[p].track).count;
     accessors.add(ViewKind::bytes, kUnsignedByte, count, "SCALAR", count);
   }
   for (const ScaleOutput& o : animation.scale_outputs) {
-    const std::uint64_t count = FileKeys(scene, animation.patterns[o.pattern].track).count;
+    const std::uint64_t count = FileKeys(tracks, animation.patterns[o.pattern].track).count;
     accessors.add(ViewKind::values, kFloat, count, "VEC3", count * 12);
   }
   for (const ValueOutput& o : animation.value_outputs) {
-    const std::uint64_t floats = value_floats(scene, o);
-    const std::uint32_t w = width(scene.tracks[o.track.value].property);
+    const std::uint64_t floats = value_floats(tracks, o);
+    const std::uint32_t w = width(tracks[o.track].property);
     accessors.add(ViewKind::values, kFloat, floats / w, w == 3 ? "VEC3" : "VEC4", floats * 4);
   }
 }
@@ -277,35 +278,35 @@ void write_indices(const Geometry& geometry, bool narrow, ByteSink& sink) {
   }
 }
 
-void write_times(const Scene& scene, const AnimationPlan& animation, ByteSink& sink) {
+void write_times(const FileTracks& tracks, const AnimationPlan& animation, ByteSink& sink) {
   for (const TrackId track : animation.inputs) {
-    const FileKeys keys(scene, track);
+    const FileKeys keys(tracks, track);
     for (std::uint32_t k = 0; k < keys.count; ++k) {
-      const float time_s = file_time_s(scene, track, keys, k);
+      const float time_s = file_time_s(tracks, track, keys, k);
       sink.write(&time_s, 4);
     }
   }
 }
 
-void write_values(const Scene& scene, const AnimationPlan& animation, ByteSink& sink) {
+void write_values(const FileTracks& tracks, const AnimationPlan& animation, ByteSink& sink) {
   for (const ScaleOutput& o : animation.scale_outputs) {
     const Pattern& pattern = animation.patterns[o.pattern];
-    const FileKeys keys(scene, pattern.track);
+    const FileKeys keys(tracks, pattern.track);
     for (std::uint32_t k = 0; k < keys.count; ++k) {
-      const glm::vec3 scale = pattern.shown(scene, keys.source(k)) ? o.shown : glm::vec3(0.0F);
+      const glm::vec3 scale = pattern.shown(tracks, keys.source(k)) ? o.shown : glm::vec3(0.0F);
       sink.write(&scale, 12);
     }
   }
   for (const ValueOutput& o : animation.value_outputs)
-    for_each_file_value(scene, o.track, o.divisor, [&](float v) { sink.write(&v, 4); });
+    for_each_file_value(tracks, o.track, o.divisor, [&](float v) { sink.write(&v, 4); });
 }
 
-void write_visibility_bytes(const Scene& scene, const AnimationPlan& animation, ByteSink& sink) {
+void write_visibility_bytes(const FileTracks& tracks, const AnimationPlan& animation, ByteSink& sink) {
   for (const std::uint32_t p : animation.byte_outputs) {
     const Pattern& pattern = animation.patterns[p];
-    const FileKeys keys(scene, pattern.track);
+    const FileKeys keys(tracks, pattern.track);
     for (std::uint32_t k = 0; k < keys.count; ++k) {
-      const std::uint8_t value = pattern.shown(scene, keys.source(k)) ? 1 : 0;
+      const std::uint8_t value = pattern.shown(tracks, keys.source(k)) ? 1 : 0;
       sink.write(&value, 1);
     }
   }
@@ -361,7 +362,7 @@ void emit_accessors(const Scene& scene, const NodePlan& nodes, const AnimationPl
       emit_geometry_accessors(scene.geometries[g], accessors);
     }
   }
-  emit_animation_accessors(scene, animation, accessors);
+  emit_animation_accessors(nodes.tracks, animation, accessors);
   if (nodes.layout == Layout::instances) {
     for (const Group& group : nodes.groups) {
       const std::uint64_t n = group.count;
@@ -418,9 +419,9 @@ void write_buffer(const Scene& scene, const NodePlan& nodes, const AnimationPlan
     const auto kind = static_cast<ViewKind>(k);
     assert(plan[kind].bytes == 0 || sink.total() - start == plan[kind].offset);
     if (kind < ViewKind::times) write_geometries(scene, plan, kind, sink);
-    if (kind == ViewKind::times) write_times(scene, animation, sink);
-    if (kind == ViewKind::values) write_values(scene, animation, sink);
-    if (kind == ViewKind::bytes) write_visibility_bytes(scene, animation, sink);
+    if (kind == ViewKind::times) write_times(nodes.tracks, animation, sink);
+    if (kind == ViewKind::values) write_values(nodes.tracks, animation, sink);
+    if (kind == ViewKind::bytes) write_visibility_bytes(nodes.tracks, animation, sink);
     if (kind >= ViewKind::translations && kind <= ViewKind::object_ids)
       write_instances(scene, nodes, kind, sink);
     if (kind == ViewKind::names && plan[kind].bytes != 0) write_front_coded(scene.objects.names, sink);

@@ -10,12 +10,22 @@ bool is_wrapped(const NodePlan& nodes, std::uint32_t object) {
   return !nodes.wrapped.empty() && std::binary_search(nodes.wrapped.begin(), nodes.wrapped.end(), object);
 }
 
+void plan_group_channels(const NodePlan& nodes, AnimationPlanner& planner, ChannelPlan& plan) {
+  for (const GroupNode& node : nodes.group_nodes) {
+    const bool by_scale = node.by_scale.track.valid(), by_pointer = node.by_pointer.track.valid();
+    plan.scale_of_group_node.push_back(by_scale ? planner.scale_sampler(node.by_scale, glm::vec3(1.0F))
+                                                : kNone);
+    plan.pointer_of_group_node.push_back(by_pointer ? planner.pointer_sampler(node.by_pointer) : kNone);
+    plan.channel_count += (by_scale ? 1 : 0) + (by_pointer ? 1 : 0);
+  }
+}
+
 void plan_object_channels(const Scene& scene, const NodePlan& nodes, AnimationPlanner& planner,
                           ChannelPlan& plan) {
   const auto want = [&](TrackId track) {
     if (nodes.pointer()) {
       std::uint32_t& sampler = plan.pointer_of_track[track.value];
-      if (sampler == kNone) sampler = planner.pointer_sampler(track);
+      if (sampler == kNone) sampler = planner.pointer_sampler({track, {}});
       ++plan.channel_count;
     }
     if (nodes.scale()) ++plan.channel_count;
@@ -25,11 +35,6 @@ void plan_object_channels(const Scene& scene, const NodePlan& nodes, AnimationPl
     std::uint32_t& sampler = plan.unit_scale_of_track[track.value];
     if (sampler == kNone) sampler = planner.scale_sampler({track, {}}, glm::vec3(1.0F));
   };
-  for (const Group& group : nodes.groups) {
-    if (!group.track.valid()) continue;
-    want(group.track);
-    want_unit_scale(group.track);
-  }
   const bool all = nodes.layout == Layout::nodes;
   const std::size_t count = all ? scene.objects.size() : nodes.single.size();
   if (nodes.scale()) plan.scale_of_object.assign(count, kNone);
@@ -97,9 +102,10 @@ class ChannelText {
 
 ChannelPlan plan_channels(const Scene& scene, const NodePlan& nodes, const std::vector<float>& strengths) {
   ChannelPlan plan;
-  AnimationPlanner planner(scene);
+  AnimationPlanner planner(nodes.tracks);
   plan.pointer_of_track.assign(nodes.pointer() ? scene.tracks.size() : 0, kNone);
   plan.unit_scale_of_track.assign(nodes.scale() ? scene.tracks.size() : 0, kNone);
+  plan_group_channels(nodes, planner, plan);
   plan_object_channels(scene, nodes, planner, plan);
   for (const LookNode& look : nodes.looks)
     plan.of_look.push_back(planner.scale_sampler({look.track, look.look}, glm::vec3(1.0F)));
@@ -117,12 +123,15 @@ ChannelPlan plan_channels(const Scene& scene, const NodePlan& nodes, const std::
 
 void Document::emit_channels(TextOut& out) const {
   ChannelText text(out);
-  const auto whole = [&](TrackId track, std::uint32_t node) {  // groups and inserted parents
+  const auto whole = [&](TrackId track, std::uint32_t node) {  // inserted parents
     if (nodes_.scale()) text.node(channels_.unit_scale_of_track[track.value], node, "scale");
     if (nodes_.pointer()) text.visible(channels_.pointer_of_track[track.value], node);
   };
-  for (std::uint32_t g = 0; g < nodes_.groups.size(); ++g) {
-    if (nodes_.groups[g].track.valid()) whole(nodes_.groups[g].track, nodes_.first_group + g);
+  for (std::uint32_t g = 0; g < nodes_.group_nodes.size(); ++g) {
+    const std::uint32_t scale = channels_.scale_of_group_node[g];
+    const std::uint32_t pointer = channels_.pointer_of_group_node[g];
+    if (scale != kNone) text.node(scale, nodes_.first_group + g, "scale");
+    if (pointer != kNone) text.visible(pointer, nodes_.first_group + g);
   }
   const bool all = nodes_.layout == Layout::nodes;
   const std::size_t count = all ? scene_.objects.size() : nodes_.single.size();

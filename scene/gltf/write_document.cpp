@@ -30,35 +30,12 @@ std::string_view name_of(VisibilityEncoding encoding) {
   return "scale";
 }
 
-/// ,"translation":[…],"rotation":[…],"scale":[…] without what is neutral.
-void emit_transform(const Transform& transform, TextOut& out) {
-  if (transform.translation_m != glm::vec3(0.0F)) {
-    out.raw(R"(,"translation":)");
-    out.numbers(transform.translation_m);
-  }
-  if (transform.rotation != glm::quat(1.0F, 0.0F, 0.0F, 0.0F)) {
-    out.raw(R"(,"rotation":)");
-    out.numbers(transform.rotation);
-  }
-  if (transform.scale != glm::vec3(1.0F)) {
-    out.raw(R"(,"scale":)");
-    out.numbers(transform.scale);
-  }
-}
-
-void emit_name(std::string_view name, TextOut& out) {
-  out.raw(R"({"name":)");
-  out.string(name);
-}
-
 void emit_strings(const std::set<std::string>& strings, TextOut& out) {
   Commas commas(out);
   out.raw("[");
   for (const std::string& s : strings) commas.next().string(s);
   out.raw("]");
 }
-
-constexpr std::string_view kNodeVisibility = R"("extensions":{"KHR_node_visibility":{}})";
 
 }  // namespace
 
@@ -70,9 +47,12 @@ Document::Document(const Scene& scene, const WriteOptions& options)
       draco_(encode_draco(scene, options.draco)),
       buffer_(plan_buffer(scene, nodes_, channels_.animation, draco_)),
       assets_(make_assets(scene, buffer_, strengths_)) {
+  const auto any_sampler = [](const std::vector<std::uint32_t>& samplers) {
+    return std::any_of(samplers.begin(), samplers.end(),
+                       [](std::uint32_t s) { return s != ChannelPlan::kNone; });
+  };
   const bool has_visibility =
-      std::any_of(channels_.pointer_of_track.begin(), channels_.pointer_of_track.end(),
-                  [](std::uint32_t s) { return s != ChannelPlan::kNone; });
+      any_sampler(channels_.pointer_of_track) || any_sampler(channels_.pointer_of_group_node);
   if (has_visibility) assets_.extensions_used.insert("KHR_node_visibility");
   if (has_visibility || !scene.material_tracks.empty())
     assets_.extensions_used.insert("KHR_animation_pointer");
@@ -210,15 +190,6 @@ void Document::emit_extensions(TextOut& out) const {
   }
 }
 
-std::uint32_t Document::top_node_of(std::uint32_t object) const {
-  if (!nodes_.wrapped.empty()) {
-    const auto at = std::lower_bound(nodes_.wrapped.begin(), nodes_.wrapped.end(), object);
-    if (at != nodes_.wrapped.end() && *at == object)
-      return nodes_.first_wrapper + static_cast<std::uint32_t>(at - nodes_.wrapped.begin());
-  }
-  return nodes_.node_of(object);
-}
-
 void Document::emit_scenes(TextOut& out) const {
   out.raw(R"(,"scene":0,"scenes":[{"name":"scene")");
   Commas roots(out);
@@ -227,7 +198,9 @@ void Document::emit_scenes(TextOut& out) const {
     roots.next().number(node);
   };
   if (nodes_.layout != Layout::nodes) {
-    for (std::uint32_t g = 0; g < nodes_.groups.size(); ++g) root(nodes_.first_group + g);
+    for (std::uint32_t g = 0; g < nodes_.group_nodes.size(); ++g) {
+      if (!nodes_.groups[nodes_.group_nodes[g].group].frame.valid()) root(nodes_.first_group + g);
+    }
   }
   const bool all = nodes_.layout == Layout::nodes;
   const std::size_t count = all ? scene_.objects.size() : nodes_.single.size();
@@ -242,14 +215,51 @@ void Document::emit_scenes(TextOut& out) const {
     if (!scene_.cameras[i].frame.valid()) root(nodes_.first_camera + i);
   }
   if (!roots.empty()) out.raw("]");
-  if (buffer_[ViewKind::names].bytes > 0) {
-    out.raw(R"(,"extras":{"scenegen":{"names":{"bufferView":)");
+  emit_scene_extras(out);
+  out.raw("}]");
+}
+
+void Document::emit_scene_extras(TextOut& out) const {
+  const bool has_names = buffer_[ViewKind::names].bytes > 0;
+  if (!has_names && nodes_.timelines.empty()) return;
+  out.raw(R"(,"extras":{"scenegen":{)");
+  Commas members(out);
+  if (has_names) {
+    members.next().raw(R"("names":{"bufferView":)");
     out.number(buffer_[ViewKind::names].index);
     out.raw(R"(,"count":)");
     out.number(scene_.objects.size());
-    out.raw(R"(,"encoding":"front-coded-utf8"}}})");
+    out.raw(R"(,"encoding":"front-coded-utf8"})");
   }
-  out.raw("}]");
+  if (!nodes_.timelines.empty()) emit_timelines(members, out);
+  out.raw("}}");
+}
+
+/// In JSON, not in a buffer view: other tools copy extras as they are, but leave views behind that nothing
+/// they know refers to.
+void Document::emit_timelines(Commas& members, TextOut& out) const {
+  members.next().raw(R"("timelines":[)");
+  Commas timelines(out);
+  for (const TrackId track : nodes_.timelines) {
+    const std::span<const float> times = scene_.times_s(track), values = scene_.values(track);
+    timelines.next().raw(R"({"times":[)");
+    Commas items(out);
+    for (const float time_s : times) items.next().number(time_s);
+    const bool is_mesh = scene_.tracks[track.value].property == Property::mesh;
+    out.raw(is_mesh ? R"(],"looks":[)" : R"(],"shown":[)");
+    const std::vector<MeshId> looks = is_mesh ? looks_of(scene_, track) : std::vector<MeshId>();
+    Commas numbers(out);
+    for (const float value : values) {
+      if (!is_mesh) {
+        numbers.next().number(value != 0.0F ? 1 : 0);
+        continue;
+      }
+      const MeshId mesh(static_cast<std::uint64_t>(value));
+      numbers.next().number(std::find(looks.begin(), looks.end(), mesh) - looks.begin());
+    }
+    out.raw("]}");
+  }
+  out.raw("]");
 }
 
 void Document::emit_cameras(TextOut& out) const {
@@ -292,168 +302,6 @@ void Document::emit_assets(TextOut& out) const {
   member(R"(,"textures":)", assets_.textures);
   member(R"(,"samplers":)", assets_.samplers);
   member(R"(,"images":)", assets_.images);
-}
-
-void Document::emit_nodes(TextOut& out) const {
-  if (nodes_.node_count == 0) return;
-  out.raw(R"(,"nodes":[)");
-  Commas commas(out);
-  if (nodes_.layout == Layout::instances) emit_group_nodes(commas, out);
-  emit_object_nodes(commas, out);
-  if (nodes_.layout == Layout::groups) emit_group_nodes(commas, out);
-  emit_frame_nodes(commas, out);
-  emit_inserted_nodes(commas, out);
-  out.raw("]");
-}
-
-void Document::emit_object_nodes(Commas& commas, TextOut& out) const {
-  const Objects& objects = scene_.objects;
-  const bool instances = nodes_.layout == Layout::instances;
-  auto look = nodes_.looks.begin();     // both lists are by object, as the loop is
-  auto single = nodes_.single.begin();  // layout groups: the others are in groups
-  auto wrapped = nodes_.wrapped.begin();
-  for (std::uint32_t k = 0; k < nodes_.object_node_count(scene_) && !out.sink().failed(); ++k) {
-    const std::uint32_t i = nodes_.object_at(k);
-    commas.next();
-    emit_name(objects.names[i], out);
-    emit_transform(objects.frame_from_object[i], out);
-    const auto first_look = look;
-    while (look != nodes_.looks.end() && look->object == i) ++look;
-    const bool has_looks = look != first_look;
-    if (!has_looks) {
-      out.raw(R"(,"mesh":)");
-      out.number(objects.mesh[i].value);
-    } else {
-      out.raw(R"(,"children":[)");
-      Commas children(out);
-      for (auto l = first_look; l != look; ++l)
-        children.next().number(nodes_.first_look + static_cast<std::uint32_t>(l - nodes_.looks.begin()));
-      out.raw("]");
-    }
-    bool carries_visibility = objects.visibility[i].valid();
-    if (wrapped != nodes_.wrapped.end() && *wrapped == i) {
-      carries_visibility = false;
-      ++wrapped;
-    }
-    if (nodes_.layout == Layout::groups) {
-      const bool is_single = single != nodes_.single.end() && *single == i;
-      carries_visibility = carries_visibility && is_single;
-      if (is_single) ++single;
-    }
-    if (carries_visibility && nodes_.pointer()) {
-      out.raw(",");
-      out.raw(kNodeVisibility);
-    }
-    if (instances || has_looks) {
-      out.raw(R"(,"extras":{"scenegen":{)");
-      if (instances) {
-        out.raw(R"("object":)");
-        out.number(i);
-      }
-      if (has_looks) {
-        out.raw(instances ? R"(,"mesh":)" : R"("mesh":)");
-        out.number(objects.mesh[i].value);
-      }
-      out.raw("}}");
-    }
-    out.raw("}");
-  }
-}
-
-void Document::emit_group_nodes(Commas& commas, TextOut& out) const {
-  std::uint32_t accessor = buffer_.first_instance;
-  for (std::size_t g = 0; g < nodes_.groups.size() && !out.sink().failed(); ++g) {
-    const Group& group = nodes_.groups[g];
-    const bool carries_pointer = nodes_.pointer() && group.track.valid();
-    commas.next();
-    emit_name(nodes_.names[g], out);
-    if (nodes_.layout == Layout::groups) {
-      out.raw(R"(,"children":[)");
-      Commas children(out);
-      for (std::uint32_t k = group.first; k < group.first + group.count; ++k)
-        children.next().number(nodes_.grouped[k]);
-      out.raw("]");
-      if (carries_pointer) {
-        out.raw(",");
-        out.raw(kNodeVisibility);
-      }
-      out.raw("}");
-      continue;
-    }
-    const auto attribute = [&](std::string_view key) {
-      out.raw(key);
-      out.number(accessor++);
-    };
-    out.raw(R"(,"mesh":)");
-    out.number(group.mesh.value);
-    attribute(R"(,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":)");
-    if (group.rotated) attribute(R"(,"ROTATION":)");
-    if (group.scaled) attribute(R"(,"SCALE":)");
-    attribute(R"(,"_OBJECT_ID":)");
-    out.raw(carries_pointer ? R"(}},"KHR_node_visibility":{}}})" : "}}}}");
-  }
-}
-
-void Document::emit_frame_nodes(Commas& commas, TextOut& out) const {
-  const std::size_t first_name = nodes_.groups.size();
-  for (std::uint32_t f = 0; f < scene_.frames.size() && !out.sink().failed(); ++f) {
-    const Frame& frame = scene_.frames[f];
-    commas.next();
-    emit_name(nodes_.names[first_name + f], out);
-    if (frame.has_matrix) {
-      out.raw(R"(,"matrix":)");
-      out.floats(&frame.matrix[0][0], 16);
-    } else {
-      emit_transform(frame.local, out);
-    }
-    Commas children(out);
-    const auto child = [&](std::uint32_t node) {
-      if (children.empty()) out.raw(R"(,"children":[)");
-      children.next().number(node);
-    };
-    for (const std::uint32_t i : nodes_.objects_of_frame[f]) child(top_node_of(i));
-    for (const std::uint32_t i : nodes_.frames_of_frame[f]) child(nodes_.first_frame + i);
-    for (const std::uint32_t i : nodes_.cameras_of_frame[f]) child(nodes_.first_camera + i);
-    if (!children.empty()) out.raw("]");
-    out.raw(R"(,"extras":{"scenegen":{"frame":)");
-    out.number(f);
-    out.raw("}}}");
-  }
-  for (std::uint32_t c = 0; c < scene_.cameras.size(); ++c) {
-    Transform transform = scene_.cameras[c].frame_from_camera;
-    transform.scale = glm::vec3(1.0F);
-    commas.next();
-    emit_name(nodes_.names[first_name + scene_.frames.size() + c], out);
-    emit_transform(transform, out);
-    out.raw(R"(,"camera":)");
-    out.number(c);
-    out.raw("}");
-  }
-}
-
-void Document::emit_inserted_nodes(Commas& commas, TextOut& out) const {
-  std::size_t name = nodes_.groups.size() + scene_.frames.size() + scene_.cameras.size();
-  for (const std::uint32_t i : nodes_.wrapped) {
-    commas.next();
-    emit_name(nodes_.names[name++], out);
-    out.raw(R"(,"children":[)");
-    out.number(nodes_.node_of(i));
-    out.raw("]");
-    if (nodes_.pointer()) {
-      out.raw(",");
-      out.raw(kNodeVisibility);
-    }
-    out.raw("}");
-  }
-  for (const LookNode& look : nodes_.looks) {
-    commas.next();
-    emit_name(nodes_.names[name++], out);
-    out.raw(R"(,"mesh":)");
-    out.number(look.look.value);
-    out.raw(R"(,"extras":{"scenegen":{"look":)");
-    out.number(look.number);
-    out.raw("}}}");
-  }
 }
 
 }  // namespace scenegen::gltf

@@ -17,9 +17,10 @@ namespace scenegen::gltf {
 struct ChannelPlan {
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
   AnimationPlan animation;
-  std::vector<std::uint32_t> pointer_of_track;     ///< of visibility tracks
-  std::vector<std::uint32_t> unit_scale_of_track;  ///< (0,0,0) and (1,1,1): groups and inserted parents
-  std::vector<std::uint32_t> scale_of_object;      ///< by object node (NodePlan::object_at)
+  std::vector<std::uint32_t> pointer_of_track;     ///< of visibility tracks of objects with nodes
+  std::vector<std::uint32_t> unit_scale_of_track;  ///< (0,0,0) and (1,1,1): inserted parents
+  std::vector<std::uint32_t> scale_of_group_node, pointer_of_group_node;  ///< scale: (0,0,0) and (1,1,1)
+  std::vector<std::uint32_t> scale_of_object;  ///< by object node (NodePlan::object_at)
   std::vector<std::uint32_t> of_look, of_frame_track, of_material_track;
   std::uint64_t channel_count = 0;
 };
@@ -44,9 +45,12 @@ class Document {
   void emit_appearance(TextOut& out) const;
   void emit_extensions(TextOut& out) const;
   void emit_scenes(TextOut& out) const;
+  void emit_scene_extras(TextOut& out) const;
+  void emit_timelines(Commas& members, TextOut& out) const;
   void emit_nodes(TextOut& out) const;
   void emit_object_nodes(Commas& commas, TextOut& out) const;
   void emit_group_nodes(Commas& commas, TextOut& out) const;
+  void emit_look_extras(const Group& group, std::uint32_t number, std::uint32_t object, TextOut& out) const;
   void emit_frame_nodes(Commas& commas, TextOut& out) const;
   void emit_inserted_nodes(Commas& commas, TextOut& out) const;
   void emit_animation(TextOut& out) const;

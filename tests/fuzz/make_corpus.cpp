@@ -10,6 +10,7 @@
 #include "tests/support/draco_quad.h"
 #include "tests/support/gltf_text.h"
 #include "tests/support/synthetic_scene.h"
+#include "tests/timeline/random_scene.h"
 
 namespace {
 
@@ -21,7 +22,8 @@ bool write_ours(const std::string& folder) {
     Scene scene;
   };
   const Source sources[] = {{"everything", testing::everything_scene()},
-                            {"town", testing::town_scene(12, 3)}};
+                            {"town", testing::town_scene(12, 3)},
+                            {"kinds", timeline::test::RandomScene(1).make_kinds(16, 2)}};
   for (const Source& source : sources) {
     for (const auto layout : {gltf::Layout::nodes, gltf::Layout::groups, gltf::Layout::instances}) {
       for (const auto visibility : {gltf::VisibilityEncoding::scale, gltf::VisibilityEncoding::pointer,

@@ -6,6 +6,7 @@
 
 #include "scene/gltf/write.h"
 #include "tests/support/synthetic_scene.h"
+#include "tests/timeline/random_scene.h"
 
 namespace {
 
@@ -64,6 +65,7 @@ int main(int argc, char** argv) {
   const bool ok = write_all(scenegen::testing::everything_scene(), folder, "every thing #1") &&
                   write_all(scenegen::testing::town_scene(2400, 64), folder, "town") &&
                   write_compressed(scenegen::testing::town_scene(2400, 64), folder) &&
+                  write_all(scenegen::timeline::test::RandomScene(1).make_kinds(90, 5), folder, "kinds") &&
                   write_all(bare, folder, "bare") && write_all(one, folder, "one");
   return ok ? 0 : 1;
 }

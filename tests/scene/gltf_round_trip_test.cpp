@@ -197,6 +197,71 @@ TEST_CASE("random scenes come back the same to see") {
   }
 }
 
+/// Bit for bit: placement, and the keys of objects whose tracks the file names (docs/FORMAT.md 5).
+void check_kinds(const Scene& a, const Scene& b) {
+  REQUIRE(b.objects.names == a.objects.names);
+  CHECK(b.objects.mesh == a.objects.mesh);
+  CHECK(b.objects.frame_from_object == a.objects.frame_from_object);
+  const auto frame_name = [](const Scene& s, FrameId f) { return f.valid() ? s.frames[f.value].name : ""; };
+  for (std::size_t i = 0; i < a.objects.size(); ++i)
+    CHECK(frame_name(b, b.objects.frame[i]) == frame_name(a, a.objects.frame[i]));
+  REQUIRE(b.object_mesh_tracks.size() == a.object_mesh_tracks.size());
+  for (std::size_t i = 0; i < a.object_mesh_tracks.size(); ++i) {
+    const ObjectMeshTrack &x = a.object_mesh_tracks[i], &y = b.object_mesh_tracks[i];
+    REQUIRE(y.object == x.object);
+    CHECK(equal_keys(a, x.track, b, y.track));
+    const TrackId shown = a.objects.visibility[x.object.value], read = b.objects.visibility[x.object.value];
+    const bool always = !shown.valid() || std::ranges::count(a.values(shown), 0.0F) == 0;
+    REQUIRE(read.valid() == !always);
+    if (!always) CHECK(equal_keys(a, shown, b, read));
+  }
+}
+
+TEST_CASE("objects that share frame, visibility and looks share nodes, and come back exactly") {
+  const TemporaryFolder folder;
+  for (const Combination& c : combinations()) {
+    if (c.layout == gltf::Layout::nodes) continue;
+    for (std::uint64_t seed = 0; seed < 6; ++seed) {
+      const Scene scene = timeline::test::RandomScene(seed).make_kinds(90, 12);
+      INFO("seed " << seed << " layout " << int(c.layout) << " visibility " << int(c.visibility));
+      REQUIRE(validate(scene).empty());
+      const auto report = gltf::predict(scene, "a.glb", {c.layout, c.visibility, 1});
+      REQUIRE(report);
+      CHECK(report->layout == c.layout);
+      if (c.layout == gltf::Layout::instances) {
+        CHECK(report->instanced_objects == scene.objects.size());
+        CHECK(report->single_object_groups == 0);
+        CHECK(report->nodes < scene.objects.size());
+      }
+      CHECK(report->channels < scene.objects.size());
+      const gltf::ReadResult result = round_trip(scene, c, folder.path.string());
+      CHECK(validate(result.scene).empty());
+      for (const gltf::Ignored& i : result.ignored) FAIL_CHECK("ignored " << i.where << ": " << i.what);
+      check_kinds(scene, result.scene);
+      check_same_to_see(scene, result.scene);
+    }
+  }
+}
+
+TEST_CASE("the animation rules where it and the timelines of looks disagree") {
+  const TemporaryFolder folder;
+  const Scene scene = timeline::test::RandomScene(1).make_kinds(90, 5);
+  for (const auto layout : {gltf::Layout::groups, gltf::Layout::instances}) {
+    const std::string path = (folder.path / "kinds.gltf").string();
+    REQUIRE(gltf::write(scene, path, {layout, gltf::VisibilityEncoding::scale, 1}));
+    std::string text = testing::file_bytes(path);
+    const std::size_t at = text.find("\"timelines\":");
+    REQUIRE(at != std::string::npos);
+    text.replace(at, 12, "\"forgotten\": ");
+    const auto read = gltf::read_memory({text.begin(), text.end()}, "a.gltf", folder.path.string());
+    if (!read) FAIL(read.error().str());
+    CHECK(validate(read->scene).empty());
+    REQUIRE(read->ignored.size() == 1);
+    CHECK(read->ignored[0].what.find("timelines of looks") != std::string::npos);
+    check_same_to_see(scene, read->scene);
+  }
+}
+
 TEST_CASE("what the file says about itself comes back") {
   const Scene scene = testing::everything_scene();
   const TemporaryFolder folder;

@@ -35,6 +35,39 @@ class RandomScene {
     return std::move(scene_);
   }
 
+  /// Objects of few kinds, each with `most` fellows at most and one at least: on the same frame, with the
+  /// same visibility, looks and mesh.
+  Scene make_kinds(std::size_t kinds, std::size_t most) {
+    scene_ = Scene{};
+    scene_.duration_s = 8.0F;
+    add_meshes();
+    add_frames(2);
+    std::vector<TrackId> shown, looks;
+    for (int i = 0; i < 4; ++i) shown.push_back(add_track(Property::visibility));
+    for (int i = 0; i < 3; ++i) looks.push_back(add_track(Property::mesh));
+    std::vector<std::size_t> kind_of;
+    for (std::size_t k = 0; k < kinds; ++k) kind_of.insert(kind_of.end(), 2 + below(most), k);
+    for (std::size_t i = kind_of.size(); i > 1; --i) std::swap(kind_of[i - 1], kind_of[below(i)]);
+    const auto one_of = [](const auto& ids, std::size_t n) { return n < ids.size() ? ids[n] : TrackId(); };
+    for (std::size_t i = 0; i < kind_of.size(); ++i) {
+      // kinds differ in the digits of their number
+      std::size_t rest = kind_of[i];
+      const auto digit = [&](std::size_t base) {
+        const std::size_t out = rest % base;
+        rest /= base;
+        return out;
+      };
+      const TrackId look = one_of(looks, digit(4));
+      const TrackId visible = one_of(shown, digit(5));
+      const std::size_t frame = digit(3);
+      const ObjectId id = scene_.objects.add("object_" + std::to_string(i), MeshId(digit(4)), transform(),
+                                             frame < 2 ? FrameId(frame) : FrameId());
+      scene_.objects.visibility[id.value] = visible;
+      if (look.valid()) scene_.object_mesh_tracks.push_back({id, look});
+    }
+    return std::move(scene_);
+  }
+
   std::uint64_t below(std::uint64_t n) { return random_.below(next_++, n); }
   float unit() { return random_.unit(next_++); }
   float in(float lo, float hi) { return lo + (hi - lo) * unit(); }
