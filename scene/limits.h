@@ -23,5 +23,9 @@ constexpr std::uint32_t kMaxImageSide = 16384;
 // Output pictures: 16384^2 is the largest attachment of lavapipe.
 constexpr std::uint32_t kMaxFrameSide = 16384;
 constexpr std::uint32_t kMaxThreads = 256;
+// Plans: as XML, elements cost up to 16 times their text in memory (1 GiB at the limit). A task of MS Project
+// takes 2 to 5 kB.
+constexpr std::uint64_t kMaxPlanBytes = 64ULL << 20;
+constexpr std::uint64_t kMaxTasks = 1'000'000;
 
 }  // namespace scenegen::limits
