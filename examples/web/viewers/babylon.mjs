@@ -61,10 +61,9 @@ class BabylonViewer {
     this.scene.imageProcessingConfiguration.toneMappingType = 2;  // Khronos PBR neutral, as in three.mjs
   }
 
-  async load(source, base = '') {
+  async load(source) {
     const container = await LoadAssetContainerAsync(typeof source === 'string' ? source : new Uint8Array(source), this.scene, {
       pluginExtension: typeof source === 'string' ? undefined : '.glb',
-      rootUrl: typeof source === 'string' ? undefined : base,
       pluginOptions: { gltf: { animationStartMode: 0, targetFps: kFramesPerSecond, loadAllMaterials: true } },
     });
     this.unload();
@@ -127,6 +126,10 @@ class BabylonViewer {
     this.camera.lowerRadiusLimit = reach / 1000;
     this.camera.upperRadiusLimit = 3 * reach;
     this.camera.panningSensibility = 2000 / reach;
+  }
+
+  getCamera() {
+    return { eye_m: this.camera.position.asArray(), target_m: this.camera.target.asArray(), yfov_rad: this.camera.fov };
   }
 
   resize(width, height) {

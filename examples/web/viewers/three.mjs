@@ -16,7 +16,7 @@ function addLights(scene, renderer, flat) {
     return null;
   }
   const generator = new THREE.PMREMGenerator(renderer);
-  scene.environment = generator.fromScene(new RoomEnvironment(), 0.04).texture;
+  scene.environment = generator.fromScene(new RoomEnvironment(), 0.04, 0.1, 100, { size: 64 }).texture;
   scene.environmentIntensity = 0.55;
   generator.dispose();
   const sun = new THREE.DirectionalLight(0xfff3e0, 2.4);
@@ -86,8 +86,8 @@ class ThreeViewer {
     this.resize(canvas.width, canvas.height);
   }
 
-  async load(source, base = '') {
-    const gltf = typeof source === 'string' ? await this.loader.loadAsync(source) : await this.loader.parseAsync(source, base);
+  async load(source) {
+    const gltf = typeof source === 'string' ? await this.loader.loadAsync(source) : await this.loader.parseAsync(source, '');
     this.unload();
     this.root = gltf.scene;
     this.ball = null;
@@ -144,6 +144,11 @@ class ThreeViewer {
       this.controls.maxDistance = 3 * reach;
       this.controls.update();
     }
+  }
+
+  getCamera() {
+    const target_m = this.controls?.target.toArray() ?? this.ball.center.toArray();
+    return { eye_m: this.camera.position.toArray(), target_m, yfov_rad: THREE.MathUtils.degToRad(this.camera.fov) };
   }
 
   resize(width, height) {
