@@ -12,6 +12,7 @@
 #include "render/draw_scene.h"
 #include "render/gpu_scene.h"
 #include "render/passes/draw_recorder.h"
+#include "render/passes/pass_recording.h"
 #include "render/passes/targets.h"
 #include "render/strategy/strategy.h"
 
@@ -88,6 +89,9 @@ struct Renderer::State {
   std::deque<Unfinished> unfinished;
 
   void build(const Scene& source, const timeline::Player& player);
+  [[nodiscard]] Result<void> check_size(glm::uvec2 size) const;
+  void make_targets();
+  [[nodiscard]] PassContext context(vkr::Frame& frame, vkr::Barriers& barriers);
   vkr::Buffer& readback(vkr::Buffer& buffer);
   void update(const timeline::ChangeSet& changes, const timeline::Player& player);
   void record_shadows(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report);
@@ -99,6 +103,15 @@ struct Renderer::State {
   template <class Body>
   Result<void> guarded(const Body& body) const;
 };
+
+Result<void> Renderer::State::check_size(glm::uvec2 size) const {
+  const auto& limits = device->properties.limits;
+  if (size.x == 0 || size.y == 0 || size.x > limits.maxFramebufferWidth ||
+      size.y > limits.maxFramebufferHeight)
+    return fail(ErrorKind::usage, "--size",
+                "each side must be 1 to " + std::to_string(limits.maxFramebufferWidth) + " on this device");
+  return {};
+}
 
 template <class Body>
 Result<void> Renderer::State::guarded(const Body& body) const {
@@ -118,7 +131,6 @@ Result<void> Renderer::State::guarded(const Body& body) const {
 }
 
 void Renderer::State::build(const Scene& source, const timeline::Player& player) {
-  const vk::Extent2D extent(options.size.x, options.size.y);
   const auto samples = options.samples == 4 ? vk::SampleCountFlagBits::e4 : vk::SampleCountFlagBits::e1;
   const TextureSets sets = texture_sets(source);
   memory.emplace(*device);
@@ -132,19 +144,29 @@ void Renderer::State::build(const Scene& source, const timeline::Player& player)
         player.emissive(id) != source.materials[i].emissive)
       gpu->set_material_colors(id, player.base_color(id), player.emissive(id));
   }
-  if (options.outputs.color)
-    color = make_target(*device, *memory, *pipelines, vkr::PassKind::color, extent, samples);
-  if (options.outputs.ids || options.outputs.depth)
-    ids = make_target(*device, *memory, *pipelines, vkr::PassKind::ids, extent, vk::SampleCountFlagBits::e1);
+  make_targets();
   // Without shadows the map is one texel: every descriptor must name something.
   const std::uint32_t side = options.shadows && options.outputs.color ? kShadowMapSide : 1;
   shadow = make_target(*device, *memory, *pipelines, vkr::PassKind::shadow, {side, side},
                        vk::SampleCountFlagBits::e1);
   gpu->bind_shadow_map(shadow->depth);
-  StrategyOptions how;
-  how.reversed = options.reversed;
-  strategy = find_strategy(options.strategy)->make(*scene, how);
+  strategy = find_strategy(options.strategy)->make({*scene, *device, options.how});
   ring.emplace(*device, kFramesInFlight);
+}
+
+void Renderer::State::make_targets() {
+  const vk::Extent2D extent(options.size.x, options.size.y);
+  const auto samples = options.samples == 4 ? vk::SampleCountFlagBits::e4 : vk::SampleCountFlagBits::e1;
+  color.reset();  // before the new ones are made: both may not fit
+  ids.reset();
+  if (options.outputs.color)
+    color = make_target(*device, *memory, *pipelines, vkr::PassKind::color, extent, samples);
+  if (options.outputs.ids || options.outputs.depth)
+    ids = make_target(*device, *memory, *pipelines, vkr::PassKind::ids, extent, vk::SampleCountFlagBits::e1);
+}
+
+PassContext Renderer::State::context(vkr::Frame& frame, vkr::Barriers& barriers) {
+  return {*device, *pipelines, *gpu, *scene, frame, barriers, ring->completed()};
 }
 
 vkr::Buffer& Renderer::State::readback(vkr::Buffer& buffer) {
@@ -174,29 +196,27 @@ void Renderer::State::record_shadows(vkr::Frame& frame, vkr::Barriers& barriers,
 }
 
 void Renderer::State::record_color(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report) {
-  begin_pass(frame.commands, *pipelines, *color, barriers);
-  DrawRecorder solid(frame.commands, *pipelines, *gpu, *scene, vkr::PassKind::color);
-  strategy->record(solid, DrawPart::solid);
-  frame.commands.setCullMode(vk::CullModeFlagBits::eNone);
-  frame.commands.bindPipeline(vk::PipelineBindPoint::eGraphics, pipelines->sky());
-  frame.commands.draw(3, 1, 0, 0);
-  DrawRecorder blended(frame.commands, *pipelines, *gpu, *scene, vkr::PassKind::color);
-  strategy->record(blended, DrawPart::blended);
-  frame.commands.endRenderPass();
+  PassRecording pass(context(frame, barriers), *color);
+  strategy->draw_solid(pass);
+  const vk::raii::CommandBuffer& rest = pass.rest();
+  DrawRecorder blended(rest, *pipelines, *gpu, *scene, vkr::PassKind::color);  // binds what the sky needs too
+  rest.bindPipeline(vk::PipelineBindPoint::eGraphics, pipelines->sky());
+  rest.draw(3, 1, 0, 0);
+  strategy->draw_blended(blended);
+  pass.end();
   record_readback(frame.commands, color->result(), readback(frame.color), barriers);
-  report.draws = solid.draws() + blended.draws();
-  report.triangles = solid.triangles() + blended.triangles();
+  report.draws = pass.solid_draws() + blended.draws();
+  report.triangles = pass.solid_triangles() + blended.triangles();
 }
 
 void Renderer::State::record_ids(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report) {
-  begin_pass(frame.commands, *pipelines, *ids, barriers);
-  DrawRecorder recorder(frame.commands, *pipelines, *gpu, *scene, vkr::PassKind::ids);
-  strategy->record(recorder, DrawPart::solid);
-  frame.commands.endRenderPass();
+  PassRecording pass(context(frame, barriers), *ids);
+  strategy->draw_solid(pass);
+  pass.end();
   if (options.outputs.ids) record_readback(frame.commands, ids->color, readback(frame.ids), barriers);
   if (options.outputs.depth) record_readback(frame.commands, ids->depth, readback(frame.depth), barriers);
-  report.ids_draws = recorder.draws();
-  report.ids_triangles = recorder.triangles();
+  report.ids_draws = pass.solid_draws();
+  report.ids_triangles = pass.solid_triangles();
 }
 
 void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline::Player& player,
@@ -210,7 +230,7 @@ void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline:
   report.update_ms = ms_since(start);
 
   start = Clock::now();
-  const PlanCounters plan = strategy->plan(view);
+  strategy->plan(view);
   report.plan_ms = ms_since(start);
 
   start = Clock::now();
@@ -231,8 +251,13 @@ void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline:
   report.submit_ms = ms_since(start);
   report.objects = scene->object_count();
   report.visible = scene->visible_object_count();
-  report.tested = plan.tested;
-  report.drawn = plan.drawn;
+  const PlanCounters& counters = strategy->counters();
+  report.tested = counters.tested;
+  report.nodes = counters.nodes;
+  report.drawn = counters.drawn;
+  report.secondaries = counters.secondaries;
+  report.recorded = counters.recorded;
+  report.recorded_draws = counters.recorded_draws;
   unfinished.push_back({&frame, report});
 }
 
@@ -268,11 +293,7 @@ Result<Renderer> Renderer::create(const Scene& scene, const timeline::Player& pl
   auto device = vkr::open_device(options.device);
   if (!device) return forward_error(device);
   state->device = std::move(*device);
-  const std::uint32_t most = state->device->properties.limits.maxFramebufferWidth;
-  if (options.size.x == 0 || options.size.y == 0 || options.size.x > most ||
-      options.size.y > state->device->properties.limits.maxFramebufferHeight)
-    return fail(ErrorKind::usage, "--size",
-                "each side must be 1 to " + std::to_string(most) + " on this device");
+  if (Result<void> fits = state->check_size(options.size); !fits) return forward_error(fits);
   Result<void> built = state->guarded([&] { state->build(scene, player); });
   if (!built) return forward_error(built);
   return Renderer(std::move(state));
@@ -300,14 +321,28 @@ Result<void> Renderer::finish(FrameResult& out) {
   return state_->guarded([&] { state_->finish(out); });
 }
 
+Result<void> Renderer::resize(glm::uvec2 size) {
+  assert(in_flight() == 0);
+  if (Result<void> fits = state_->check_size(size); !fits) return fits;
+  return state_->guarded([&] {
+    state_->ring->wait_all();
+    state_->options.size = size;
+    state_->make_targets();
+    state_->strategy->resized();
+  });
+}
+
 const DeviceInfo& Renderer::device() const {
   return state_->device->info;
 }
 glm::uvec2 Renderer::size() const {
   return state_->options.size;
 }
-const std::vector<std::string>& Renderer::warnings() const {
-  return state_->gpu->warnings();
+std::vector<std::string> Renderer::warnings() const {
+  std::vector<std::string> out = state_->gpu->warnings();
+  const std::vector<std::string>& more = state_->strategy->warnings();
+  out.insert(out.end(), more.begin(), more.end());
+  return out;
 }
 std::uint64_t Renderer::device_bytes() const {
   return state_->memory->block_bytes();

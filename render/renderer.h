@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "render/device_options.h"
+#include "render/strategy_options.h"
 #include "render/view.h"
 #include "scene/result.h"
 #include "timeline/player.h"
@@ -27,7 +28,7 @@ struct RendererOptions {
   std::uint32_t samples = 4;  ///< of the colour picture: 1 or 4
   Outputs outputs;
   std::string strategy = "inline";
-  bool reversed = false;  ///< solid objects in reverse order: finds pixels where equal depths meet
+  StrategyOptions how;
   bool shadows = true;
   bool full_barriers = false;  ///< a full barrier at every step: must give equal pictures
 };
@@ -36,12 +37,16 @@ struct RendererOptions {
 struct FrameReport {
   double time_s = 0;
   std::uint64_t objects = 0;
-  std::uint64_t changed = 0;    ///< entries of the ChangeSet
-  std::uint64_t visible = 0;    ///< objects visible by timeline
-  std::uint64_t tested = 0;     ///< boxes tested against the frustum
-  std::uint64_t drawn = 0;      ///< slots (object x primitive) that the strategy drew in the colour pass
-  std::uint64_t draws = 0;      ///< draw commands of the colour pass, without the sky
-  std::uint64_t triangles = 0;  ///< of the colour pass, without the sky
+  std::uint64_t changed = 0;         ///< entries of the ChangeSet
+  std::uint64_t visible = 0;         ///< objects visible by timeline
+  std::uint64_t tested = 0;          ///< boxes tested against the frustum
+  std::uint64_t nodes = 0;           ///< octree nodes visited
+  std::uint64_t secondaries = 0;     ///< kept command buffers executed, in all passes but the shadows'
+  std::uint64_t recorded = 0;        ///< of them recorded anew
+  std::uint64_t recorded_draws = 0;  ///< draw commands in those
+  std::uint64_t drawn = 0;           ///< slots (object x primitive) that the strategy drew in the colour pass
+  std::uint64_t draws = 0;           ///< draw commands of the colour pass, without the sky
+  std::uint64_t triangles = 0;       ///< of the colour pass, without the sky
   std::uint64_t shadow_draws = 0;
   std::uint64_t shadow_triangles = 0;
   std::uint64_t ids_draws = 0;  ///< of the pass of ids and depth
@@ -85,10 +90,13 @@ class Renderer {
   /// Waits for the oldest unfinished frame and copies its pictures; reuses the vectors of `out`.
   Result<void> finish(FrameResult& out);
 
+  /// Pictures of another size from now on. No frame may be unfinished. Errors as for create().
+  Result<void> resize(glm::uvec2 size);
+
   [[nodiscard]] const DeviceInfo& device() const;
   [[nodiscard]] glm::uvec2 size() const;
-  /// Images that could not be decoded and the like.
-  [[nodiscard]] const std::vector<std::string>& warnings() const;
+  /// Images that could not be decoded, a strategy that had to go a slower way, and the like; may grow.
+  [[nodiscard]] std::vector<std::string> warnings() const;
   /// Device memory taken from the driver, bytes.
   [[nodiscard]] std::uint64_t device_bytes() const;
   /// What the validation layer reported so far; forgets it.

@@ -37,6 +37,8 @@ struct FramesRequest {
   bool ids = false, depth = false;
   bool shadows = true;
   std::string strategy = "inline";
+  std::uint32_t octree_n = 0;
+  std::uint64_t octree_mib = 1024;
   bool full_barriers = false;
   std::string device;
   bool list_devices = false;
@@ -168,6 +170,10 @@ ordered_json frame_json(const render::FrameReport& r, double seek_ms, double enc
           {"changed", r.changed},
           {"visible", r.visible},
           {"tested", r.tested},
+          {"nodes", r.nodes},
+          {"secondaries", r.secondaries},
+          {"recorded", r.recorded},
+          {"recordedDraws", r.recorded_draws},
           {"drawn", r.drawn},
           {"draws", r.draws},
           {"triangles", r.triangles},
@@ -294,6 +300,8 @@ render::RendererOptions renderer_options(const FramesRequest& request) {
   o.samples = request.samples;
   o.outputs = {true, request.ids, request.depth};
   o.strategy = request.strategy;
+  o.how.objects_per_node = request.octree_n;
+  o.how.octree_bytes = request.octree_mib << 20;
   o.shadows = request.shadows;
   o.full_barriers = request.full_barriers;
   return o;
@@ -312,15 +320,19 @@ Result<void> draw(const FramesRequest& request, const Options& options) {
   auto renderer = render::Renderer::create(scene, player, renderer_options(request));
   if (!renderer) return forward_error(renderer);
   if (auto made = make_folder(request.folder); !made) return made;
-  if (!request.quiet) {
-    for (const std::string& warning : renderer->warnings())
-      (void)std::fprintf(stderr, "warning: %s\n", printable(warning).c_str());
-  }
+  std::size_t warned = 0;
+  const auto warn = [&](const render::Renderer& of) {
+    const std::vector<std::string> all = of.warnings();
+    for (; warned < all.size() && !request.quiet; ++warned)
+      (void)std::fprintf(stderr, "warning: %s\n", printable(all[warned]).c_str());
+  };
+  warn(*renderer);
   const std::uint64_t objects = scene.objects.size();
   *read = {};  // the renderer and the player hold what they need
   const double load_s = watch.seconds();
   Filming filming(request, std::move(player), std::move(*camera), std::move(*renderer));
   if (auto done = filming.run(*times); !done) return done;
+  warn(filming.renderer());  // what came up on the way
   const std::vector<std::string> messages = filming.renderer().take_validation_messages();
   if (!messages.empty())
     return fail(ErrorKind::no_device, "validation",
@@ -372,7 +384,13 @@ void add_options(Options& options, FramesRequest& r) {
               "samples a pixel");
   options.add("--shadows", on_off_value(r.shadows), "shadows of the sun");
   options.add("--strategy", choice_value<std::string>(r.strategy, render::strategy_choices()),
-              "way of drawing");
+              "way of drawing; all give the same pictures (docs/STRATEGIES.md)");
+  options.add(
+      "--octree-n", whole_value(r.octree_n, 0U, 100000U),
+      "objects a node of the octree holds, and draws a kept command buffer; 0: the smallest from 100 on "
+      "that fits");
+  options.add("--octree-memory", whole_value(r.octree_mib, std::uint64_t{1}, std::uint64_t{1} << 20, "MIB"),
+              "what --strategy octree may take; without room for it, inline is used");
   options.add("--barriers", choice_value<bool>(r.full_barriers, {{"exact", false}, {"full", true}}),
               "full: a full barrier at every step, to look for missing ones");
   options.group("Device");

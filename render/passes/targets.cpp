@@ -37,7 +37,7 @@ Target make_target(const vkr::Device& device, vkr::Memory& memory, const vkr::Pi
 }
 
 void begin_pass(const vk::raii::CommandBuffer& commands, const vkr::Pipelines& pipelines, Target& target,
-                vkr::Barriers& barriers) {
+                vkr::Barriers& barriers, vk::SubpassContents contents) {
   barriers.discard(target.depth, Use::depth_attachment);
   if (target.has_color()) barriers.discard(target.color, Use::color_attachment);
   if (target.resolves()) barriers.discard(target.resolve, Use::color_attachment);
@@ -51,10 +51,14 @@ void begin_pass(const vk::raii::CommandBuffer& commands, const vkr::Pipelines& p
   const vk::Rect2D area({0, 0}, target.extent);
   commands.beginRenderPass(
       vk::RenderPassBeginInfo(pipelines.render_pass(target.pass), *target.framebuffer, area, clears),
-      vk::SubpassContents::eInline);
-  commands.setViewport(0, vk::Viewport(0.0F, 0.0F, static_cast<float>(target.extent.width),
-                                       static_cast<float>(target.extent.height), 0.0F, 1.0F));
-  commands.setScissor(0, area);
+      contents);
+  if (contents == vk::SubpassContents::eInline) set_viewport(commands, target.extent);
+}
+
+void set_viewport(const vk::raii::CommandBuffer& commands, vk::Extent2D extent) {
+  commands.setViewport(0, vk::Viewport(0.0F, 0.0F, static_cast<float>(extent.width),
+                                       static_cast<float>(extent.height), 0.0F, 1.0F));
+  commands.setScissor(0, vk::Rect2D({0, 0}, extent));
 }
 
 void record_readback(const vk::raii::CommandBuffer& commands, vkr::Image& image, const vkr::Buffer& to,

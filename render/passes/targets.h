@@ -31,8 +31,10 @@ struct Target {
                                  vk::SampleCountFlagBits samples);
 
 /// Barriers to attachment layouts (old contents are dropped), then the pass begins: cleared, viewport set.
+/// `contents` says whether draws or secondary command buffers follow; those set their viewport themselves.
 void begin_pass(const vk::raii::CommandBuffer& commands, const vkr::Pipelines& pipelines, Target& target,
-                vkr::Barriers& barriers);
+                vkr::Barriers& barriers, vk::SubpassContents contents = vk::SubpassContents::eInline);
+void set_viewport(const vk::raii::CommandBuffer& commands, vk::Extent2D extent);
 
 /// Copies one image into a readback buffer, for the processor to read after the fence.
 void record_readback(const vk::raii::CommandBuffer& commands, vkr::Image& image, const vkr::Buffer& to,

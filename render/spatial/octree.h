@@ -77,6 +77,10 @@ class Octree {
   void remove(std::uint32_t slot);
   /// The slot's box changed.
   void move(std::uint32_t slot);
+  /// What is recorded of the slot's chunk is no longer right, for a reason other than its slots.
+  void renew(std::uint32_t slot) {
+    if (contains(slot)) touch_chunk(chunk_of_slot_[slot]);
+  }
   [[nodiscard]] bool contains(std::uint32_t slot) const { return chunk_of_slot_[slot] != kNone; }
   void clear();
   /// Recomputes boxes and sums of what changed. O(chunks touched * slots in them + their ancestors).

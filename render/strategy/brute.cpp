@@ -7,16 +7,16 @@ namespace {
 class Brute final : public ListStrategy {
  public:
   using ListStrategy::ListStrategy;
-  PlanCounters plan(const View& view) override {
+  void plan(const View& view) override {
     list_visible(scene_, list_);
-    return finish_plan(view);
+    finish_plan(view);
   }
 };
 
 }  // namespace
 
-std::unique_ptr<Strategy> make_brute(const DrawScene& scene, const StrategyOptions& options) {
-  return std::make_unique<Brute>(scene, options);
+std::unique_ptr<Strategy> make_brute(const StrategyContext& context) {
+  return std::make_unique<Brute>(context);
 }
 
 }  // namespace scenegen::render

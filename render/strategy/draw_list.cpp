@@ -32,6 +32,23 @@ void list_in_frustum(const DrawScene& scene, const CullPlanes& planes, DrawList&
   }
 }
 
+void list_blended_in_frustum(const DrawScene& scene, const CullPlanes& planes, DrawList& out) {
+  out.clear();
+  const auto words = scene.visible().words();
+  out.inside.assign(words.begin(), words.end());
+  const std::size_t first = scene.solid_end() / 64;
+  for (std::size_t w = 0; w < std::min(first, out.inside.size()); ++w) out.inside[w] = 0;
+  if (first < out.inside.size()) out.inside[first] &= ~std::uint64_t{0} << (scene.solid_end() % 64);
+  for (std::size_t w = first; w < words.size(); ++w)
+    out.tested += static_cast<std::uint64_t>(std::popcount(out.inside[w]));
+  cull_boxes(scene.boxes(), planes, out.inside, out.inside);
+  for (std::size_t w = first; w < words.size(); ++w) emit(scene, w, out.inside[w], out);
+}
+
+void list_solid(const DrawScene& scene, std::span<const std::uint64_t> slots, DrawList& out) {
+  for (std::size_t w = 0; w < slots.size(); ++w) emit(scene, w, slots[w], out);
+}
+
 void sort_back_to_front(const DrawScene& scene, const View& view, std::vector<std::uint32_t>& slots) {
   const glm::vec3 forward = view.forward();
   const SlotBoxes& b = scene.boxes();

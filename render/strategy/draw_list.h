@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "render/draw_scene.h"
@@ -29,6 +30,10 @@ struct DrawList {
 void list_visible(const DrawScene& scene, DrawList& out);
 /// What of it touches the frustum; never misses anything (boxes and planes carry slack for rounding).
 void list_in_frustum(const DrawScene& scene, const CullPlanes& planes, DrawList& out);
+/// Only the blended part of that.
+void list_blended_in_frustum(const DrawScene& scene, const CullPlanes& planes, DrawList& out);
+/// Adds solid slots given as bits, in slot order.
+void list_solid(const DrawScene& scene, std::span<const std::uint64_t> slots, DrawList& out);
 /// Farthest first along the view direction, by the boxes' centres; ties by object, then slot.
 void sort_back_to_front(const DrawScene& scene, const View& view, std::vector<std::uint32_t>& slots);
 

@@ -7,16 +7,16 @@ namespace {
 class Inline final : public ListStrategy {
  public:
   using ListStrategy::ListStrategy;
-  PlanCounters plan(const View& view) override {
+  void plan(const View& view) override {
     list_in_frustum(scene_, cull_planes(frustum_of(view.clip_from_world), scene_.bounds_m()), list_);
-    return finish_plan(view);
+    finish_plan(view);
   }
 };
 
 }  // namespace
 
-std::unique_ptr<Strategy> make_inline(const DrawScene& scene, const StrategyOptions& options) {
-  return std::make_unique<Inline>(scene, options);
+std::unique_ptr<Strategy> make_inline(const StrategyContext& context) {
+  return std::make_unique<Inline>(context);
 }
 
 }  // namespace scenegen::render

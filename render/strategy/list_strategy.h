@@ -9,12 +9,14 @@ namespace scenegen::render {
 /// Derived classes fill `list_` in plan() and end with finish_plan().
 class ListStrategy : public Strategy {
  public:
-  ListStrategy(const DrawScene& scene, const StrategyOptions& options) : scene_(scene), options_(options) {}
+  explicit ListStrategy(const StrategyContext& context) : scene_(context.scene), options_(context.options) {}
   void update(const timeline::ChangeSet& /*changes*/) override {}  // DrawScene's visible set is all it needs
-  void record(DrawRecorder& recorder, DrawPart part) override;
+  void draw_solid(PassRecording& pass) override;
+  void draw_blended(DrawRecorder& recorder) override;
 
  protected:
-  PlanCounters finish_plan(const View& view);
+  /// Sorts, and counts what the list holds.
+  void finish_plan(const View& view);
 
   const DrawScene& scene_;
   StrategyOptions options_;

@@ -6,13 +6,17 @@
 
 namespace scenegen::render {
 
-std::unique_ptr<Strategy> make_brute(const DrawScene& scene, const StrategyOptions& options);
-std::unique_ptr<Strategy> make_inline(const DrawScene& scene, const StrategyOptions& options);
+std::unique_ptr<Strategy> make_brute(const StrategyContext& context);
+std::unique_ptr<Strategy> make_inline(const StrategyContext& context);
+std::unique_ptr<Strategy> make_octree_record(const StrategyContext& context);
+std::unique_ptr<Strategy> make_octree(const StrategyContext& context);
 
 std::span<const StrategyEntry> strategies() {
   static constexpr std::array kEntries{
       StrategyEntry{"brute", "every object that is visible by timeline; the reference", &make_brute},
-      StrategyEntry{"inline", "per-object frustum culling, commands recorded each frame", &make_inline},
+      StrategyEntry{"inline", "frustum culling of every object, commands recorded each frame", &make_inline},
+      StrategyEntry{"octree-record", "octree culling, commands recorded each frame", &make_octree_record},
+      StrategyEntry{"octree", "octree culling, commands of each node kept", &make_octree},
   };
   return kEntries;
 }

@@ -4,31 +4,41 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "render/draw_scene.h"
+#include "render/strategy_options.h"
 #include "render/view.h"
 
 namespace scenegen::render {
 
 class DrawRecorder;
+class PassRecording;
+namespace vkr {
+struct Device;
+}
 
-/// Which part of a pass is being recorded: opaque and masked objects, or blended ones afterwards.
-enum class DrawPart : std::uint8_t { solid, blended };
-
-struct StrategyOptions {
-  bool reversed = false;  ///< draw solid slots in reverse order: finds pixels where equal depths meet
+/// What a strategy may keep a reference to: all of it outlives the strategy.
+struct StrategyContext {
+  const DrawScene& scene;
+  const vkr::Device& device;
+  StrategyOptions options;
 };
 
-/// What planning found, for the frame report.
+/// What planning and drawing found, for the frame report.
 struct PlanCounters {
-  std::uint64_t tested = 0;  ///< boxes tested against the frustum
-  std::uint64_t drawn = 0;   ///< slots in the list
+  std::uint64_t tested = 0;          ///< boxes tested against the frustum
+  std::uint64_t drawn = 0;           ///< slots that are drawn
+  std::uint64_t nodes = 0;           ///< octree nodes visited
+  std::uint64_t secondaries = 0;     ///< cached secondary command buffers executed, in all passes
+  std::uint64_t recorded = 0;        ///< of them recorded anew
+  std::uint64_t recorded_draws = 0;  ///< draw commands in those
 };
 
-/// Knows neither files nor tracks: it is fed ChangeSets (after DrawScene took them), plans on the processor,
-/// then records into a pass that has begun. `record` may be called several times after one `plan`, once per
-/// pass and part.
+/// Knows neither files nor tracks. A frame: update() with a ChangeSet that DrawScene has taken, plan() on the
+/// processor, then draw_solid() and draw_blended() once a pass.
 class Strategy {
  public:
   Strategy() = default;
@@ -37,14 +47,28 @@ class Strategy {
   virtual ~Strategy() = default;
 
   virtual void update(const timeline::ChangeSet& changes) = 0;
-  virtual PlanCounters plan(const View& view) = 0;
-  virtual void record(DrawRecorder& recorder, DrawPart part) = 0;
+  virtual void plan(const View& view) = 0;
+  /// Draws opaque and masked objects into a pass that has not begun.
+  virtual void draw_solid(PassRecording& pass) = 0;
+  /// Draws blended objects, back to front.
+  virtual void draw_blended(DrawRecorder& recorder) = 0;
+  /// The pictures have another size: nothing that holds a viewport is good any more. No frame is in flight.
+  virtual void resized() {}
+
+  /// Of the last plan and the passes since.
+  [[nodiscard]] const PlanCounters& counters() const { return counters_; }
+  /// What a person should know: a limit met, a slower way taken.
+  [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+
+ protected:
+  PlanCounters counters_;
+  std::vector<std::string> warnings_;
 };
 
 struct StrategyEntry {
   std::string_view name;
   std::string_view summary;
-  std::unique_ptr<Strategy> (*make)(const DrawScene& scene, const StrategyOptions& options);
+  std::unique_ptr<Strategy> (*make)(const StrategyContext& context);
 };
 
 /// All strategies, in the order in which help lists them.

@@ -19,6 +19,14 @@ std::byte* Staging::reserve(Memory& memory, std::uint64_t bytes) {
   return buffer_.mapped();
 }
 
+const vk::raii::CommandBuffer& Frame::secondary(const Device& device) {
+  if (secondaries_used == secondaries.size()) {
+    vk::raii::CommandBuffers made(device.device, {*pool, vk::CommandBufferLevel::eSecondary, 1});
+    secondaries.push_back(std::move(made.front()));
+  }
+  return secondaries[secondaries_used++];
+}
+
 FrameRing::FrameRing(const Device& device, std::uint32_t frames) : device_(device), frames_(frames) {
   for (Frame& f : frames_) {
     f.pool = vk::raii::CommandPool(device.device, {{}, device.queue_family});
@@ -43,6 +51,8 @@ Frame& FrameRing::begin() {
   wait(f);
   f.staging.reset();
   f.pool.reset();
+  f.secondaries_used = 0;
+  f.serial = ++serials_;
   f.commands.begin(vk::CommandBufferBeginInfo(vk::CommandBufferUsageFlagBits::eOneTimeSubmit));
   if (device_.timestamps) {
     f.commands.resetQueryPool(*f.timestamps, 0, 2);
@@ -66,6 +76,7 @@ void FrameRing::wait(Frame& frame) {
     throw vk::DeviceLostError("waiting for a frame");
   device_.device.resetFences(*frame.fence);
   frame.pending = false;
+  completed_ = std::max(completed_, frame.serial);
 }
 
 void FrameRing::wait_all() {

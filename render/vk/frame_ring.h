@@ -1,6 +1,8 @@
 // What each frame in flight owns: commands, fence, staging, timestamps, and a list of things to let go.
 #pragma once
 
+#include <cstdint>
+#include <deque>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -32,7 +34,13 @@ struct Frame {
   vk::raii::QueryPool timestamps{nullptr};
   Staging staging;
   Buffer color, ids, depth;  // readback, allocated when first asked for
+  std::uint64_t serial = 0;  // counts frames from 1
   bool pending = false;      // submitted and not yet waited for
+
+  /// A secondary command buffer for this frame only, not yet begun.
+  const vk::raii::CommandBuffer& secondary(const Device& device);
+  std::deque<vk::raii::CommandBuffer> secondaries;  // a deque: those handed out stay where they are
+  std::size_t secondaries_used = 0;
 };
 
 /// Frames are used in turn. `acquire` waits for the device only when the frame is still pending.
@@ -50,6 +58,8 @@ class FrameRing {
   /// Waits until the device is done with the frame.
   void wait(Frame& frame);
   void wait_all();
+  /// The device is done with this frame and all before it.
+  [[nodiscard]] std::uint64_t completed() const { return completed_; }
   /// Milliseconds between the frame's two timestamps; none when the device has no timestamps.
   [[nodiscard]] std::optional<double> gpu_ms(const Frame& frame) const;
 
@@ -57,6 +67,8 @@ class FrameRing {
   const Device& device_;
   std::vector<Frame> frames_;
   std::size_t next_ = 0;
+  std::uint64_t serials_ = 0;
+  std::uint64_t completed_ = 0;
 };
 
 /// Records commands, submits them and waits: for uploads before the first frame.

@@ -64,7 +64,7 @@ TEST_CASE("drawn in reverse order, solid objects give the same depth, and the sa
   RendererOptions options = test_options();
   const View view = look({4, 3, 8}, {0.5F, 1, 0}, options.size);
   const FrameResult forwards = render_one(scene, view, options, 9);
-  options.reversed = true;
+  options.how.reversed = true;
   const FrameResult backwards = render_one(scene, view, options, 9);
   CHECK(forwards.depth == backwards.depth);
   std::size_t ties = 0;

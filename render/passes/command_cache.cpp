@@ -1,0 +1,73 @@
+#include "render/passes/command_cache.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace scenegen::render {
+
+CommandCache::CommandCache(const vkr::Device& device, std::uint64_t fail_after)
+    : device_(device),
+      pool_(device.device, {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family}),
+      fail_after_(fail_after) {}
+
+void CommandCache::retire(Kept& kept) {
+  if (*kept.owner) retired_.push_back({std::move(kept.owner), kept.last_used});
+  kept = Kept{};
+}
+
+void CommandCache::forget() {
+  for (std::vector<Kept>& of_pass : kept_) {
+    for (Kept& kept : of_pass) retire(kept);
+  }
+}
+
+vk::raii::CommandBuffer CommandCache::take(std::uint64_t completed) {
+  // In order of retirement, which is nearly that of last use: one that waits holds back those behind it for a
+  // frame or two, no more.
+  while (!retired_.empty() && retired_.front().last_used <= completed) {
+    free_.push_back(std::move(retired_.front().owner));
+    retired_.pop_front();
+  }
+  if (free_.empty()) {
+    constexpr std::uint32_t kAtOnce = 64;
+    if (fail_after_ != 0 && allocated_ + kAtOnce > fail_after_)
+      throw vk::OutOfDeviceMemoryError("allocating command buffers (fault injected)");
+    vk::raii::CommandBuffers made(device_.device, {*pool_, vk::CommandBufferLevel::eSecondary, kAtOnce});
+    allocated_ += kAtOnce;
+    for (vk::raii::CommandBuffer& one : made) free_.push_back(std::move(one));
+  }
+  vk::raii::CommandBuffer out = std::move(free_.back());
+  free_.pop_back();
+  return out;
+}
+
+void CommandCache::record(const PassRecording& pass, Kept& kept, std::span<const std::uint32_t> slots) {
+  const PassContext& context = pass.context();
+  // Several frames may have it in flight at once.
+  begin_secondary(kept.owner, context.pipelines, pass.target(),
+                  vk::CommandBufferUsageFlagBits::eSimultaneousUse);
+  DrawRecorder recorder(kept.owner, context.pipelines, context.gpu, context.scene, pass.target().pass);
+  for (const std::uint32_t slot : slots) recorder.draw(slot);
+  kept.owner.end();
+  kept.entry = {*kept.owner, recorder.draws(), recorder.triangles()};
+  ++counters_.recorded;
+  counters_.recorded_draws += recorder.draws();
+}
+
+const CommandCache::Entry& CommandCache::get(const PassRecording& pass, std::uint32_t chunk,
+                                             std::uint64_t revision, std::span<const std::uint32_t> slots) {
+  assert(pass.target().pass != vkr::PassKind::shadow);
+  std::vector<Kept>& of_pass = kept_[pass.target().pass == vkr::PassKind::color ? 0 : 1];
+  if (of_pass.size() <= chunk) of_pass.resize(std::max<std::size_t>(chunk + 1, of_pass.size() * 2));
+  Kept& kept = of_pass[chunk];
+  if (!*kept.owner || kept.revision != revision) {
+    retire(kept);
+    kept.owner = take(pass.context().completed);
+    record(pass, kept, slots);
+    kept.revision = revision;
+  }
+  kept.last_used = pass.context().frame.serial;
+  return kept.entry;
+}
+
+}  // namespace scenegen::render

@@ -1,0 +1,69 @@
+// Secondary command buffers that are kept from frame to frame (D 3.1.3), one a chunk and pass.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <vector>
+#include <vulkan/vulkan_raii.hpp>
+
+#include "render/passes/pass_recording.h"
+
+namespace scenegen::render {
+
+/// A command buffer that the device may still run is never recorded again: the chunk gets another one, and
+/// the old one waits for the last frame that used it. Everything is allocated from one pool; what is no
+/// longer needed is used again before more is allocated.
+class CommandCache {
+ public:
+  /// What a chunk's commands hold.
+  struct Entry {
+    vk::CommandBuffer commands;
+    std::uint64_t draws = 0;
+    std::uint64_t triangles = 0;
+  };
+
+  /// `fail_after`: throws out-of-memory when more buffers are wanted than this (0: never): for tests.
+  explicit CommandCache(const vkr::Device& device, std::uint64_t fail_after = 0);
+
+  /// Commands that draw `slots` in the pass: the kept ones if they were recorded for this revision, else they
+  /// are recorded now. Throws vk::SystemError when there is no memory.
+  const Entry& get(const PassRecording& pass, std::uint32_t chunk, std::uint64_t revision,
+                   std::span<const std::uint32_t> slots);
+  /// Nothing that was recorded is good any more (the picture has another size).
+  void forget();
+
+  /// Since the last call.
+  struct Counters {
+    std::uint64_t recorded = 0;        ///< buffers recorded
+    std::uint64_t recorded_draws = 0;  ///< draw commands in them
+  };
+  [[nodiscard]] Counters take_counters() { return std::exchange(counters_, {}); }
+  [[nodiscard]] std::uint64_t buffers() const { return allocated_; }
+
+ private:
+  struct Kept {
+    vk::raii::CommandBuffer owner{nullptr};
+    Entry entry;
+    std::uint64_t revision = 0;
+    std::uint64_t last_used = 0;  // serial of a frame
+  };
+  struct Retired {
+    vk::raii::CommandBuffer owner;
+    std::uint64_t last_used;
+  };
+  void retire(Kept& kept);
+  vk::raii::CommandBuffer take(std::uint64_t completed);
+  void record(const PassRecording& pass, Kept& kept, std::span<const std::uint32_t> slots);
+
+  const vkr::Device& device_;
+  vk::raii::CommandPool pool_{nullptr};
+  std::vector<vk::raii::CommandBuffer> free_;
+  std::deque<Retired> retired_;
+  std::vector<Kept> kept_[2];  // by pass (color, ids) and chunk
+  std::uint64_t allocated_ = 0;
+  std::uint64_t fail_after_;
+  Counters counters_;
+};
+
+}  // namespace scenegen::render

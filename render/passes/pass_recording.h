@@ -1,0 +1,65 @@
+// One pass of a frame while it is recorded: draws into the primary command buffer, or secondary command
+// buffers executed from it. The two do not mix inside one render pass, so what comes last (sky, blended
+// objects) goes into a secondary of this frame in the second case.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vulkan/vulkan_raii.hpp>
+
+#include "render/passes/draw_recorder.h"
+#include "render/passes/targets.h"
+#include "render/vk/frame_ring.h"
+
+namespace scenegen::render {
+
+/// What recording needs, the same for all passes of a frame.
+struct PassContext {
+  const vkr::Device& device;
+  vkr::Pipelines& pipelines;
+  const GpuScene& gpu;
+  const DrawScene& scene;
+  vkr::Frame& frame;
+  vkr::Barriers& barriers;
+  std::uint64_t completed = 0;  ///< serial of the last frame that the device is done with
+};
+
+/// Begins a secondary command buffer that runs inside `pass`: it inherits nothing but the attachments.
+void begin_secondary(const vk::raii::CommandBuffer& commands, const vkr::Pipelines& pipelines,
+                     const Target& target, vk::CommandBufferUsageFlags usage);
+
+class PassRecording {
+ public:
+  PassRecording(const PassContext& context, Target& target) : context_(context), target_(target) {}
+
+  /// Draws of solid objects into the primary: the pass begins with the first call.
+  [[nodiscard]] DrawRecorder& draws();
+  /// Cached secondaries instead, in order. `draws` and `triangles` are what they hold, for the report.
+  void execute(std::span<const vk::CommandBuffer> secondaries, std::uint64_t draws, std::uint64_t triangles);
+  /// Where to record what comes after the solid objects. State of earlier draws is not to be relied on.
+  [[nodiscard]] const vk::raii::CommandBuffer& rest();
+  /// Ends the pass.
+  void end();
+
+  [[nodiscard]] const PassContext& context() const { return context_; }
+  [[nodiscard]] const Target& target() const { return target_; }
+  [[nodiscard]] std::uint64_t solid_draws() const { return draws_ + (recorder_ ? recorder_->draws() : 0); }
+  [[nodiscard]] std::uint64_t solid_triangles() const {
+    return triangles_ + (recorder_ ? recorder_->triangles() : 0);
+  }
+
+ private:
+  enum class Form : std::uint8_t { not_begun, draws, secondaries };
+  void begin(Form form);
+
+  PassContext context_;
+  Target& target_;
+  Form form_ = Form::not_begun;
+  std::optional<DrawRecorder> recorder_;
+  const vk::raii::CommandBuffer* rest_ = nullptr;
+  std::uint64_t draws_ = 0;
+  std::uint64_t triangles_ = 0;
+};
+
+}  // namespace scenegen::render

@@ -1,0 +1,50 @@
+// The dissertation's baseline "Frustum Culling": chunks of the octree are culled, and what is left of them is
+// recorded each frame.
+#include "render/spatial/scene_octree.h"
+#include "render/strategy/list_strategy.h"
+#include "render/strategy/octree_choice.h"
+
+namespace scenegen::render {
+namespace {
+
+class OctreeRecord final : public ListStrategy {
+ public:
+  OctreeRecord(const StrategyContext& context, std::uint32_t objects_per_node)
+      : ListStrategy(context), octree_(context.scene, objects_per_node) {}
+
+  void update(const timeline::ChangeSet& changes) override { octree_.update(changes); }
+
+  void plan(const View& view) override {
+    const CullPlanes planes = cull_planes(frustum_of(view.clip_from_world), scene_.bounds_m());
+    const Octree& tree = octree_.tree();
+    list_blended_in_frustum(scene_, planes, list_);
+    chunks_.clear();
+    OctreeCounters found;
+    tree.cull(planes, view.eye_m(), chunks_, found);
+    // Recorded in order of slots, as every strategy that records does: state changes least often then.
+    inside_.assign((scene_.slot_count() + 63) / 64, 0);
+    for (const std::uint32_t chunk : chunks_) {
+      for (const std::uint32_t slot : tree.chunk(chunk).slots)
+        inside_[slot / 64] |= std::uint64_t{1} << (slot % 64);
+    }
+    list_solid(scene_, inside_, list_);
+    list_.tested += found.tests;
+    finish_plan(view);
+    counters_.nodes = found.nodes;
+  }
+
+ private:
+  SceneOctree octree_;
+  std::vector<std::uint32_t> chunks_;
+  std::vector<std::uint64_t> inside_;
+};
+
+}  // namespace
+
+std::unique_ptr<Strategy> make_octree_record(const StrategyContext& context) {
+  // Nothing is cached, so nothing has to fit but the tree.
+  const std::uint32_t wanted = context.options.objects_per_node;
+  return std::make_unique<OctreeRecord>(context, wanted != 0 ? wanted : kObjectsPerNode);
+}
+
+}  // namespace scenegen::render
