@@ -38,6 +38,7 @@ struct NodeMotion {
 struct Motions {
   std::vector<std::uint32_t> of_node;  ///< into `motions`; empty when nothing is animated
   std::vector<NodeMotion> motions;
+  std::vector<SourceDocument::ScaleVisibility> scale_visibility;
 };
 /// Also replaces the own scale of nodes whose scale track is a visibility track, by the one shown.
 [[nodiscard]] Motions build_motions(Document& document, Data& data, VisibilityTable& visibility,
@@ -99,7 +100,8 @@ class LookTable {
 
 /// Where each object comes from, for SourceDocument.
 struct Origins {
-  std::vector<std::uint32_t> node, instance;
+  std::vector<std::uint32_t> node, instance;  ///< by object
+  std::vector<std::uint32_t> node_of_frame;
 };
 /// Frames, objects, cameras, their tracks.
 [[nodiscard]] Origins build_objects(Document& document, Data& data, const Hierarchy& hierarchy,

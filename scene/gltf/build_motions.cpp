@@ -228,6 +228,8 @@ void MotionBuilder::add_node_channel(const Channel& channel, const Place& at) {
     const ScaleMeaning& meaning = scale_of(channel, at);
     motion.scale = meaning.constant ? NodeMotion::kConstant : meaning.track;
     motion.scale_visibility = meaning.visibility;
+    if (meaning.constant)
+      out_.scale_visibility.push_back({channel.target, meaning.has_shown ? meaning.shown : node.local.scale});
     if (meaning.has_shown && meaning.constant) node.local.scale = meaning.shown;
   }
 }
@@ -271,6 +273,8 @@ Motions MotionBuilder::build() {
   const Place channels = animation.key("channels");
   for (std::size_t i = 0; i < document_.channels.size(); ++i)
     add_channel(document_.channels[i], channels.at(i));
+  std::sort(out_.scale_visibility.begin(), out_.scale_visibility.end(),
+            [](const auto& a, const auto& b) { return a.node < b.node; });
   scene_.duration_s = static_cast<float>(std::max(end_s_, document_.end_s));
   return std::move(out_);
 }

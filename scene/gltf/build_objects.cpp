@@ -38,6 +38,8 @@ class ObjectBuilder {
     const NodeDetail* const d = detail(node);
     return document_.ours && d != nullptr && d->mesh != kNone && document_.nodes[node].mesh == kNone;
   }
+  /// Written by us as a whole, not a document of another program that was given times.
+  [[nodiscard]] bool ours_alone() const { return document_.ours && !document_.foreign; }
   [[nodiscard]] bool instanced(std::uint32_t node) const {
     const NodeDetail* const d = detail(node);
     return d != nullptr && d->instanced;
@@ -133,6 +135,7 @@ void ObjectBuilder::add_frame(std::uint32_t node, FrameId parent) {
   const Node& n = document_.nodes[node];
   const FrameId id(scene_.frames.size());
   Frame& frame = scene_.frames.emplace_back();
+  origins_.node_of_frame.push_back(node);
   frame.name = n.name;
   frame.parent = parent;
   frame.local = n.local;
@@ -194,7 +197,7 @@ std::uint64_t ObjectBuilder::instance_count(std::uint32_t node) {
   same(d.translation, "TRANSLATION");
   same(d.rotation, "ROTATION");
   same(d.scale, "SCALE");
-  if (document_.ours) same(d.object_id, "_OBJECT_ID");
+  if (ours_alone()) same(d.object_id, "_OBJECT_ID");
   if (count == 0) reject(at, "none of TRANSLATION, ROTATION, SCALE");
   return count;
 }
@@ -205,7 +208,7 @@ std::uint64_t ObjectBuilder::count_objects() {
     if ((flags_[node] & kUsed) == 0 || !is_object(node)) continue;
     const NodeDetail* const d = detail(node);
     const bool many = instanced(node);
-    if (document_.ours && d != nullptr && (d->object != kNone || (many && d->object_id != kNone)))
+    if (ours_alone() && d != nullptr && (d->object != kNone || (many && d->object_id != kNone)))
       explicit_ids_ = true;
     const std::uint64_t here = many ? instance_count(node) : 1;
     if (here > limits::kMaxObjects - count) {
@@ -381,7 +384,7 @@ void ObjectBuilder::add_cameras() {
     if ((flags_[node] & kUsed) == 0 || n.camera == kNone) continue;
     check_index(n.camera, document_.cameras.size(), "cameras", node_place(node).key("camera"));
     Camera camera = document_.cameras[n.camera];
-    if (!document_.ours && !n.name.empty())
+    if (!ours_alone() && !n.name.empty())
       camera.name = n.name;  // foreign cameras are mostly told apart by their nodes
     camera.frame = frame_[node];
     if ((flags_[node] & kOwnFrame) == 0) camera.frame_from_camera = n.local;
@@ -413,9 +416,15 @@ void ObjectBuilder::add_names() {
       document_.ignored.add(at, "the table of object names is damaged (" + fault.error.what + ")");
     }
   }
+  // Names that objects have whatever their nodes are called (docs/FORMAT.md 8) are theirs before others ask.
+  for (std::uint32_t node = 0; node < flags_.size() && document_.ours; ++node) {
+    if ((flags_[node] & kUsed) == 0 || !is_object(node) || instanced(node)) continue;
+    const NodeDetail* const d = detail(node);
+    if (d != nullptr && !d->name.empty()) names.reserve(d->name);
+  }
   std::size_t bytes = 0;
   for (const std::uint32_t node : origins_.node) bytes += document_.nodes[node].name.size();
-  bool all_named = origins_.instance.empty();
+  bool all_named = origins_.instance.empty() && !names.has_reserved();
   for (std::size_t i = 0; i < count && all_named; ++i)
     all_named = !document_.nodes[origins_.node[i]].name.empty();
   if (all_named) {
@@ -427,6 +436,11 @@ void ObjectBuilder::add_names() {
     const std::uint32_t node = origins_.node[i];
     const std::string_view name = document_.nodes[node].name;
     const bool many = instanced(node);
+    if (const NodeDetail* const d = detail(node);
+        document_.ours && !many && d != nullptr && !d->name.empty()) {
+      names.add_reserved(d->name);
+      continue;
+    }
     if (!many && !name.empty()) {
       names.add(name);
       continue;

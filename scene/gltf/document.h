@@ -72,6 +72,7 @@ struct NodeDetail {
                 object_id = kNone;                                          ///< accessors of the instances
   std::uint32_t object = kNone, look = kNone, mesh = kNone, frame = kNone;  ///< extras.scenegen
   std::uint32_t visibility = kNone, looks = kNone;  ///< extras.scenegen: into the scene's timelines
+  std::string_view name;  ///< its name: of the object, not of the node
 };
 struct Node {
   Transform local;
@@ -79,8 +80,11 @@ struct Node {
   std::uint32_t mesh = kNone, camera = kNone;
   std::uint32_t first_child = 0, child_count = 0;  ///< into Document::children
   std::uint32_t detail = kNone;                    ///< into Document::node_details
-  bool has_visibility = false;                     ///< KHR_node_visibility is there
-  bool visible = true;
+  bool has_visibility : 1 = false;                 ///< KHR_node_visibility is there
+  bool visible : 1 = true;
+  bool skinned : 1 = false;
+  bool has_other : 1 = false;   ///< extensions that mean something to its children or beside its mesh
+  bool odd_extras : 1 = false;  ///< extras that are no object
 };
 struct SceneRecord {
   std::uint32_t first_root = 0, root_count = 0;  ///< into Document::scene_roots
@@ -126,8 +130,10 @@ class IgnoredList {
 
 struct Document {
   SceneInfo info;
-  bool ours = false;  ///< asset.extras.scenegen is there
-  double end_s = -1;  ///< its time.end
+  bool ours = false;             ///< asset.extras.scenegen is there
+  bool foreign = false;          ///< and says that it was added to a document of another program,
+  std::string source_generator;  ///< whose asset.generator this was
+  double end_s = -1;             ///< its time.end
   std::vector<std::string_view> extensions_used, extensions_required;
   std::vector<Buffer> buffers;
   std::vector<BufferView> views;

@@ -41,12 +41,15 @@ bool UniqueNames::insert(std::string_view name, std::uint64_t hash) {
 }
 
 void UniqueNames::add(std::string_view wanted, std::uint64_t hash) {
-  if (insert(wanted, hash)) return;
+  const auto is_free = [&](std::string_view name) {
+    return reserved_.empty() || reserved_.find(std::string(name)) == reserved_.end();
+  };
+  if (is_free(wanted) && insert(wanted, hash)) return;
   const std::string base(wanted);
   std::uint32_t& suffix = next_suffix_.emplace(base, 2).first->second;
   for (;;) {
     const std::string name = base + "_" + std::to_string(suffix++);
-    if (insert(name, hash_of(name))) return;
+    if (is_free(name) && insert(name, hash_of(name))) return;
   }
 }
 

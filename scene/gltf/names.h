@@ -5,6 +5,7 @@
 #include <array>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "scene/gltf/accessor.h"
@@ -17,6 +18,12 @@ class UniqueNames {
  public:
   UniqueNames(NameTable& names, std::size_t count);
   void add(std::string_view wanted) { add(wanted, hash_of(wanted)); }
+  /// Keeps `name` for add_reserved(), whenever that comes. Call it before add().
+  void reserve(std::string_view name) { reserved_.emplace(name); }
+  void add_reserved(std::string_view name) {
+    if (!insert(name, hash_of(name))) add(name);
+  }
+  [[nodiscard]] bool has_reserved() const { return !reserved_.empty(); }
   /// add(name_of(0)) ... add(name_of(count - 1)). Every insertion misses the cache; asking for the slots some
   /// names ahead makes a million of them three times as fast.
   template <class NameOf>
@@ -42,6 +49,7 @@ class UniqueNames {
   NameTable& names_;
   std::vector<std::uint64_t> slots_;  ///< open addressing: upper half of the hash, index + 1
   std::unordered_map<std::string, std::uint32_t> next_suffix_;
+  std::unordered_set<std::string> reserved_;
 };
 
 /// Names of docs/FORMAT.md 4, in index order.

@@ -58,6 +58,11 @@ void parse_ours(Value value, const Place& at, Document& out) {
   each_field(value, at, [&](std::string_view key, Value& v, const Place& p) {
     if (key == "format") {
       if (get_count(v, p) != 1) reject(p, "a newer file form than this program reads (1)");
+    } else if (key == "source") {
+      out.foreign = true;
+      each_field(v, p, [&](std::string_view inner, Value& w, const Place& q) {
+        if (inner == "generator") out.source_generator = get_string(w, q);
+      });
     } else if (key == "seed") {
       out.info.seed = get_count(v, p, limits::kMaxSeed);
     } else if (key == "arguments") {

@@ -42,13 +42,15 @@ void parse_node_extensions(Value value, const Place& at, Node& node, Document& o
     } else if (name == "EXT_mesh_gpu_instancing") {
       parse_instancing(v, p, detail_of(node, out), out);
     } else {
+      node.has_other = true;
       ignore_extension(name, p, out);
     }
   });
 }
 
 void parse_node_extras(Value value, const Place& at, Node& node, Document& out) {
-  if (!is_object(value)) return;
+  node.odd_extras = !is_object(value);
+  if (node.odd_extras) return;
   each_field(value, at, [&](std::string_view owner, Value& v, const Place& p) {
     if (owner != "scenegen" || !is_object(v)) return;
     NodeDetail& detail = detail_of(node, out);
@@ -65,6 +67,8 @@ void parse_node_extras(Value value, const Place& at, Node& node, Document& out) 
         detail.visibility = get_index(w, q);
       } else if (key == "looks") {
         detail.looks = get_index(w, q);
+      } else if (key == "name") {
+        detail.name = out.unescaped.emplace_back(get_string(w, q));
       }
     });
   });
@@ -113,6 +117,7 @@ void parse_node(Value value, const Place& at, Document& out) {
     } else if (key == "camera") {
       node.camera = get_index(v, p);
     } else if (key == "skin") {
+      node.skinned = true;
       out.ignored.add(p, "skins are drawn at rest");
     }
   });

@@ -1,5 +1,7 @@
 #include "scene/gltf/read.h"
 
+#include <simdjson.h>
+
 #include <cstring>
 #include <new>
 
@@ -14,14 +16,20 @@ namespace {
 using namespace reading;
 
 std::shared_ptr<const SourceDocument> keep_source(const std::string& name, const Container& container,
-                                                  const Buffers& buffers, Origins origins) {
+                                                  const Buffers& buffers, const Scene& scene,
+                                                  const Motions& motions, Origins origins) {
   auto out = std::make_shared<SourceDocument>();
   out->path = name;
+  out->json.reserve(container.json.size() + simdjson::SIMDJSON_PADDING);  // patch() reads it again
   out->json = container.json;
   for (std::uint32_t i = 0; i < buffers.size(); ++i)
     out->buffers.emplace_back(buffers[i].begin(), buffers[i].end());
   out->node_of_object = std::move(origins.node);
   out->instance_of_object = std::move(origins.instance);
+  out->node_of_frame = std::move(origins.node_of_frame);
+  out->track_count = static_cast<std::uint32_t>(scene.tracks.size());
+  if (out->track_count != 0) out->visibility_of_object = scene.objects.visibility;
+  out->scale_visibility = motions.scale_visibility;
   return out;
 }
 
@@ -46,7 +54,8 @@ ReadResult read_block(const Block& file, const std::string& name, const std::str
   Origins origins = build_objects(document, data, hierarchy, motions, visibility, out.scene);
   out.scene.info = std::move(document.info);
   out.ignored = document.ignored.take();
-  if (options.keep_source) out.source = keep_source(name, container, buffers, std::move(origins));
+  if (options.keep_source)
+    out.source = keep_source(name, container, buffers, out.scene, motions, std::move(origins));
   return out;
 }
 

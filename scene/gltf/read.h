@@ -19,7 +19,17 @@ struct SourceDocument {
       buffers;                                ///< resolved bytes of /buffers/i (GLB chunk, data URI, file)
   std::vector<std::uint32_t> node_of_object;  ///< /nodes/i of each object of the scene
   std::vector<std::uint32_t>
-      instance_of_object;  ///< index within an instancing node; empty when there are none
+      instance_of_object;                    ///< index within an instancing node; empty when there are none
+  std::vector<std::uint32_t> node_of_frame;  ///< /nodes/i of each frame of the scene
+  /// What the scene held when it was read; what patch() finds beside it is new.
+  std::uint32_t track_count = 0;
+  std::vector<TrackId> visibility_of_object;  ///< empty: no object had a track
+  /// Nodes whose scale the first animation sets to (0,0,0) and one other value, by node.
+  struct ScaleVisibility {
+    std::uint32_t node = 0;
+    glm::vec3 shown{1.0F};
+  };
+  std::vector<ScaleVisibility> scale_visibility;
 };
 
 /// Something in the file that the scene does not hold (it stays in the source document).

@@ -379,8 +379,10 @@ void emit_buffer_views(const Scene& scene, const BufferPlan& plan, TextOut& out)
   Commas commas(out);
   const auto view = [&](const BufferPlan::View& v, int stride, int target) {
     if (v.bytes == 0) return;
-    commas.next().raw(R"({"buffer":0,"byteOffset":)");
-    out.number(v.offset);
+    commas.next().raw(R"({"buffer":)");
+    out.number(plan.buffer);
+    out.raw(R"(,"byteOffset":)");
+    out.number(plan.first_byte + v.offset);
     out.raw(R"(,"byteLength":)");
     out.number(v.bytes);
     if (stride != 0) {

@@ -51,6 +51,8 @@ struct BufferPlan {
   std::vector<View> draco;  ///< of each geometry, empty where it is plain; none at all without Draco
   std::vector<View> images;
   std::uint32_t view_count = 0;
+  std::uint32_t buffer = 0;  ///< buffers[buffer], from its byte first_byte on
+  std::uint64_t first_byte = 0;
   std::uint64_t bytes = 0;  ///< a multiple of 4
 
   const DracoStreams* streams = nullptr;

@@ -1,5 +1,6 @@
 // Channels of the one animation: which there are and their text.
 #include "scene/gltf/write_document.h"
+#include "scene/gltf/write_info.h"
 
 namespace scenegen::gltf {
 
@@ -51,52 +52,6 @@ void plan_object_channels(const Scene& scene, const NodePlan& nodes, AnimationPl
     }
   }
 }
-
-std::string_view path_of(Property property) {
-  switch (property) {
-    case Property::translation:
-      return "translation";
-    case Property::rotation:
-      return "rotation";
-    default:
-      return "scale";
-  }
-}
-
-/// Text of channels, one after the other.
-class ChannelText {
- public:
-  explicit ChannelText(TextOut& out) : out_(out), commas_(out) {}
-
-  void node(std::uint32_t sampler, std::uint32_t node, std::string_view path) {
-    open(sampler);
-    out_.raw(R"("node":)");
-    out_.number(node);
-    out_.raw(R"(,"path":")");
-    out_.raw(path);
-    out_.raw("\"}}");
-  }
-  void pointer(std::uint32_t sampler, std::string_view list, std::uint32_t index, std::string_view rest) {
-    open(sampler);
-    out_.raw(R"("path":"pointer","extensions":{"KHR_animation_pointer":{"pointer":")");
-    out_.raw(list);
-    out_.number(index);
-    out_.raw(rest);
-    out_.raw("\"}}}}");
-  }
-  void visible(std::uint32_t sampler, std::uint32_t node) {
-    pointer(sampler, "/nodes/", node, "/extensions/KHR_node_visibility/visible");
-  }
-
- private:
-  void open(std::uint32_t sampler) {
-    commas_.next().raw(R"({"sampler":)");
-    out_.number(sampler);
-    out_.raw(R"(,"target":{)");
-  }
-  TextOut& out_;
-  Commas commas_;
-};
 
 }  // namespace
 
@@ -167,21 +122,9 @@ void Document::emit_animation(TextOut& out) const {
   out.raw(R"(,"animations":[{"name":"timeline","samplers":[)");
   Commas commas(out);
   for (const AnimationSampler& sampler : channels_.animation.samplers) {
-    commas.next().raw(R"({"input":)");
-    out.number(buffer_.first_input + sampler.input);
-    out.raw(R"(,"output":)");
-    out.number(buffer_.accessor_of(sampler));
-    switch (sampler.interpolation) {
-      case Interpolation::step:
-        out.raw(R"(,"interpolation":"STEP"})");
-        break;
-      case Interpolation::linear:
-        out.raw(R"(,"interpolation":"LINEAR"})");
-        break;
-      case Interpolation::cubic_spline:
-        out.raw(R"(,"interpolation":"CUBICSPLINE"})");
-        break;
-    }
+    commas.next();
+    emit_sampler(buffer_.first_input + sampler.input, buffer_.accessor_of(sampler), sampler.interpolation,
+                 out);
   }
   out.raw(R"(],"channels":[)");
   emit_channels(out);

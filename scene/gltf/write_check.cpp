@@ -206,4 +206,11 @@ Result<void> check_writable(const Scene& scene) {
   return {};
 }
 
+Result<void> check_patchable(const Scene& scene) {
+  for (const auto check : {check_frames_and_cameras, check_tracks, check_names, check_info}) {
+    if (Result<void> result = check(scene); !result) return result;
+  }
+  return {};
+}
+
 }  // namespace scenegen::gltf

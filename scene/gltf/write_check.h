@@ -11,6 +11,9 @@ namespace scenegen::gltf {
 /// here.
 [[nodiscard]] Result<void> check_writable(const Scene& scene);
 
+/// The part of it that patch() needs: what comes from the file is as the reader took it.
+[[nodiscard]] Result<void> check_patchable(const Scene& scene);
+
 /// MIME type as glTF wants it: the one given, or told from the first bytes; empty when glTF has no place for
 /// it.
 [[nodiscard]] std::string image_mime_type(const Image& image);

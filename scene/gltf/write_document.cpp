@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "scene/gltf/write_info.h"
+
 namespace scenegen::gltf {
 
 namespace {
@@ -16,18 +18,6 @@ std::string_view name_of(Layout layout) {
     default:
       return "nodes";
   }
-}
-
-std::string_view name_of(VisibilityEncoding encoding) {
-  switch (encoding) {
-    case VisibilityEncoding::scale:
-      return "scale";
-    case VisibilityEncoding::pointer:
-      return "pointer";
-    case VisibilityEncoding::both:
-      return "both";
-  }
-  return "scale";
 }
 
 void emit_strings(const std::set<std::string>& strings, TextOut& out) {
@@ -124,59 +114,9 @@ void Document::emit_json(std::string_view buffer_uri, ByteSink& sink) const {
 }
 
 void Document::emit_asset(TextOut& out) const {
-  const SceneInfo& info = scene_.info;
-  out.raw(R"("asset":{"version":"2.0","generator":"scenegen )" SCENEGEN_VERSION
-          R"(","extras":{"scenegen":{"format":1,"version":")" SCENEGEN_VERSION "\"");
-  if (info.seed) {
-    out.raw(R"(,"seed":)");
-    out.number(*info.seed);
-  }
-  out.raw(R"(,"arguments":[)");
-  Commas commas(out);
-  for (const std::string& argument : info.arguments) commas.next().string(argument);
-  out.raw(R"(],"objects":)");
-  out.number(scene_.objects.size());
-  out.raw(R"(,"layout":")");
-  out.raw(name_of(nodes_.layout));
-  out.raw(R"(","visibility":")");
-  out.raw(name_of(nodes_.visibility));
-  out.raw(R"(","time":{"unit":"s","start":0,"end":)");
-  out.number(scene_.duration_s);
-  out.raw("}");
-  emit_appearance(out);
-  out.raw("}}}");
-}
-
-void Document::emit_appearance(TextOut& out) const {
-  if (!scene_.info.appearance) return;
-  const AppearanceInfo& a = *scene_.info.appearance;
-  const auto text = [&](std::string_view key, std::string_view value) {
-    out.raw(key);
-    out.string(value);
-  };
-  const auto value = [&](std::string_view key, auto number) {
-    out.raw(key);
-    out.number(number);
-  };
-  text(R"(,"appearance":{"curve":)", a.curve);
-  text(R"(,"curveVariant":)", a.curve_variant);
-  text(R"(,"order":)", a.order);
-  value(R"(,"cells":[)", a.cells.x);
-  value(",", a.cells.y);
-  value(",", a.cells.z);
-  out.raw(R"(],"gridMinZUp":)");
-  out.numbers(a.grid_z_up_m.lo);
-  out.raw(R"(,"gridMaxZUp":)");
-  out.numbers(a.grid_z_up_m.hi);
-  value(R"(,"interval":)", a.interval_s);
-  value(R"(,"hold":)", a.hold_s);
-  value(R"(,"coherence":)", a.coherence_given);
-  value(R"(,"coherenceMeasured":)", a.coherence_measured);
-  value(R"(,"displaced":)", a.displaced_objects);
-  value(R"(,"timed":)", a.timed_objects);
-  value(R"(,"moments":)", a.moments);
-  value(R"(,"locality":)", a.locality_cells);
-  out.raw("}");
+  out.raw(R"("asset":{"version":"2.0","generator":"scenegen )" SCENEGEN_VERSION R"(","extras":{"scenegen":)");
+  emit_scenegen(scene_, {name_of(nodes_.layout), nodes_.visibility, {}}, out);
+  out.raw("}}");
 }
 
 void Document::emit_extensions(TextOut& out) const {

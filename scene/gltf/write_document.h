@@ -7,6 +7,7 @@
 #include "scene/gltf/write.h"
 #include "scene/gltf/write_assets.h"
 #include "scene/gltf/write_buffer.h"
+#include "scene/gltf/write_content.h"
 #include "scene/gltf/write_plan.h"
 #include "scene/gltf/write_text.h"
 #include "scene/scene.h"
@@ -26,23 +27,22 @@ struct ChannelPlan {
 };
 
 /// Everything about a scene's file but its bytes. Keeps a reference to the scene.
-class Document {
+class Document : public FileContent {
  public:
   Document(const Scene& scene, const WriteOptions& options);
   Document(const Document&) = delete;  // buffer_ points at draco_
   Document& operator=(const Document&) = delete;
 
-  /// The JSON text; `buffer_uri` empty for a .glb. The same at every call.
-  void emit_json(std::string_view buffer_uri, ByteSink& sink) const;
-  [[nodiscard]] std::uint64_t buffer_bytes() const { return buffer_.bytes; }
-  void emit_buffer(ByteSink& sink) const { write_buffer(scene_, nodes_, channels_.animation, buffer_, sink); }
-  /// Everything but the byte counts.
-  [[nodiscard]] WriteReport report() const;
+  void emit_json(std::string_view buffer_uri, ByteSink& sink) const override;
+  [[nodiscard]] std::uint64_t buffer_bytes() const override { return buffer_.bytes; }
+  void emit_buffer(ByteSink& sink) const override {
+    write_buffer(scene_, nodes_, channels_.animation, buffer_, sink);
+  }
+  [[nodiscard]] WriteReport report() const override;
 
  private:
   void report_draco(WriteReport& report) const;
   void emit_asset(TextOut& out) const;
-  void emit_appearance(TextOut& out) const;
   void emit_extensions(TextOut& out) const;
   void emit_scenes(TextOut& out) const;
   void emit_scene_extras(TextOut& out) const;

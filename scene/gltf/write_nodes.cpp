@@ -2,28 +2,13 @@
 #include <algorithm>
 
 #include "scene/gltf/write_document.h"
+#include "scene/gltf/write_info.h"
 
 namespace scenegen::gltf {
 
 namespace {
 
 constexpr std::uint32_t kNoObject = ObjectId::kNone;
-
-/// ,"translation":[…],"rotation":[…],"scale":[…] without what is neutral.
-void emit_transform(const Transform& transform, TextOut& out) {
-  if (transform.translation_m != glm::vec3(0.0F)) {
-    out.raw(R"(,"translation":)");
-    out.numbers(transform.translation_m);
-  }
-  if (transform.rotation != glm::quat(1.0F, 0.0F, 0.0F, 0.0F)) {
-    out.raw(R"(,"rotation":)");
-    out.numbers(transform.rotation);
-  }
-  if (transform.scale != glm::vec3(1.0F)) {
-    out.raw(R"(,"scale":)");
-    out.numbers(transform.scale);
-  }
-}
 
 void emit_name(std::string_view name, TextOut& out) {
   out.raw(R"({"name":)");

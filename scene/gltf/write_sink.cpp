@@ -7,8 +7,14 @@
 
 namespace scenegen::gltf {
 
-ByteSink::ByteSink(int descriptor)
-    : buffer_(new char[kBufferBytes]), end_(buffer_.get()), descriptor_(descriptor) {}
+ByteSink::ByteSink(std::size_t capacity, int descriptor)
+    : capacity_(capacity), buffer_(new char[capacity]), end_(buffer_.get()), descriptor_(descriptor) {}
+
+ByteSink::ByteSink(int descriptor) : ByteSink(kBufferBytes, descriptor) {}
+
+ByteSink::ByteSink(std::string& memory) : ByteSink(2 * kRoom, -1) {
+  memory_ = &memory;
+}
 
 void ByteSink::fill(char byte, std::size_t count) {
   for (; count > 0; --count) {
@@ -32,6 +38,7 @@ void ByteSink::write_large(const char* bytes, std::size_t count) {
 }
 
 void ByteSink::write_out(const char* bytes, std::size_t count) {
+  if (memory_ != nullptr) memory_->append(bytes, count);
   if (descriptor_ < 0 || error_ != 0) return;
   constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;  // write(2) takes at most 2^31 - 4096
   while (count > 0) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <string>
 
 namespace scenegen::gltf {
 
@@ -14,10 +15,12 @@ namespace scenegen::gltf {
 class ByteSink {
  public:
   explicit ByteSink(int descriptor = -1);
+  /// Appends to `memory` at every flush().
+  explicit ByteSink(std::string& memory);
 
   /// Room for at least `most` (<= kRoom) bytes; commit() the end of what was put there.
   char* reserve(std::size_t most) {
-    if (static_cast<std::size_t>(buffer_.get() + kBufferBytes - end_) < most) flush();
+    if (static_cast<std::size_t>(buffer_.get() + capacity_ - end_) < most) flush();
     return end_;
   }
   void commit(char* end) { end_ = end; }
@@ -45,10 +48,14 @@ class ByteSink {
   void write_out(const char* bytes, std::size_t count);
 
   static constexpr std::size_t kBufferBytes = 256 * 1024;  // larger does not make write(2) faster
+  ByteSink(std::size_t capacity, int descriptor);
+
+  std::size_t capacity_;
   std::unique_ptr<char[]> buffer_;
   char* end_;
   std::uint64_t flushed_ = 0;
   int descriptor_;
+  std::string* memory_ = nullptr;
   int error_ = 0;
 };
 
