@@ -9,7 +9,8 @@ namespace scenegen::gltf::reading {
 
 namespace {
 
-constexpr std::uint8_t kInScene = 1, kUsed = 2, kUsedBelow = 4, kOwnFrame = 8, kLook = 16, kFurtherLook = 32;
+constexpr std::uint8_t kInScene = 1, kUsed = 2, kUsedBelow = 4, kOwnFrame = 8, kLook = 16, kFurtherLook = 32,
+                       kStandIn = 64;
 
 class ObjectBuilder {
  public:
@@ -61,9 +62,15 @@ class ObjectBuilder {
   std::uint32_t own_visibility(std::uint32_t node);
   void place_nodes();
   void add_frame(std::uint32_t node, FrameId parent);
+  void find_stand_ins();
+  /// f(node) for every node that is one object or many, in their order: by node, but a node that draws what
+  /// was another node's mesh comes in that one's place.
+  template <class F>
+  void each_object_node(const F& f);
   std::uint64_t instance_count(std::uint32_t node);
   std::uint64_t count_objects();
   void add_objects(std::uint64_t count);
+  void add_objects_of(std::uint32_t node);
   void add_instances(std::uint32_t node);
   void put(std::uint64_t id, std::uint32_t node, std::uint32_t instance, const Transform& transform);
   std::uint64_t next_id(std::uint32_t given, const Place& at);
@@ -84,8 +91,9 @@ class ObjectBuilder {
   Place root_;
   Place nodes_ = root_.key("nodes");
   std::vector<std::uint8_t> flags_;
-  std::vector<FrameId> frame_;          ///< by node: of its children, and of itself
-  std::vector<std::uint32_t> visible_;  ///< by node, ancestors included
+  std::vector<FrameId> frame_;           ///< by node: of its children, and of itself
+  std::vector<std::uint32_t> visible_;   ///< by node, ancestors included
+  std::vector<std::uint32_t> stand_in_;  ///< by node; empty when there are none
   bool explicit_ids_ = false;
   std::uint64_t next_ = 0;
   std::vector<bool> taken_;
@@ -202,10 +210,32 @@ std::uint64_t ObjectBuilder::instance_count(std::uint32_t node) {
   return count;
 }
 
+void ObjectBuilder::find_stand_ins() {
+  if (!document_.ours) return;
+  for (std::uint32_t node = 0; node < flags_.size(); ++node) {
+    const NodeDetail* const d = detail(node);
+    if (d == nullptr || d->stands_for >= flags_.size() || (flags_[node] & kUsed) == 0 || !is_object(node))
+      continue;
+    if (d->stands_for == node || is_object(d->stands_for)) continue;
+    if (stand_in_.empty()) stand_in_.assign(flags_.size(), kNone);
+    std::uint32_t& place = stand_in_[d->stands_for];
+    if (place != kNone) continue;
+    place = node;
+    flags_[node] |= kStandIn;
+  }
+}
+
+template <class F>
+void ObjectBuilder::each_object_node(const F& f) {
+  for (std::uint32_t node = 0; node < flags_.size(); ++node) {
+    if (!stand_in_.empty() && stand_in_[node] != kNone) f(stand_in_[node]);
+    if ((flags_[node] & kUsed) != 0 && (flags_[node] & kStandIn) == 0 && is_object(node)) f(node);
+  }
+}
+
 std::uint64_t ObjectBuilder::count_objects() {
   std::uint64_t count = 0;
-  for (std::uint32_t node = 0; node < flags_.size(); ++node) {
-    if ((flags_[node] & kUsed) == 0 || !is_object(node)) continue;
+  each_object_node([&](std::uint32_t node) {
     const NodeDetail* const d = detail(node);
     const bool many = instanced(node);
     if (ours_alone() && d != nullptr && (d->object != kNone || (many && d->object_id != kNone)))
@@ -217,7 +247,7 @@ std::uint64_t ObjectBuilder::count_objects() {
     if (many) data_.budget().take(here * 64, node_place(node));  // a Scene has about as much for each object
     if (many && origins_.instance.empty()) origins_.instance.resize(1);
     count += here;
-  }
+  });
   return count;
 }
 
@@ -281,23 +311,22 @@ void ObjectBuilder::add_objects(std::uint64_t count) {
   if (!origins_.instance.empty()) origins_.instance.resize(count);
   if (explicit_ids_) taken_.resize(count);
   for (std::uint32_t node = 0; node < flags_.size(); ++node) {
-    if ((flags_[node] & kUsed) == 0) continue;
-    if ((flags_[node] & kFurtherLook) != 0) add_further_look(node);
-    if (!is_object(node)) continue;
-    const Node& n = document_.nodes[node];
-    const NodeDetail* const d = detail(node);
-    const Place at = node_place(node);
-    check_index(n.mesh != kNone ? n.mesh : d->mesh, scene_.meshes.size(), "meshes", at.key("mesh"));
-    if (shows_group_look(node)) check_index(d->mesh, scene_.meshes.size(), "meshes", at.key("extras"));
-    if (instanced(node)) {
-      add_instances(node);
-      continue;
-    }
-    const std::uint64_t id = next_id(d == nullptr ? kNone : d->object, at);
-    put(id, node, 0, (flags_[node] & kOwnFrame) != 0 ? Transform() : n.local);
-    if (has_looks(node)) add_looks(node, ObjectId(id));
+    if ((flags_[node] & kUsed) != 0 && (flags_[node] & kFurtherLook) != 0) add_further_look(node);
   }
+  each_object_node([&](std::uint32_t node) { add_objects_of(node); });
   resolve_looks();
+}
+
+void ObjectBuilder::add_objects_of(std::uint32_t node) {
+  const Node& n = document_.nodes[node];
+  const NodeDetail* const d = detail(node);
+  const Place at = node_place(node);
+  check_index(n.mesh != kNone ? n.mesh : d->mesh, scene_.meshes.size(), "meshes", at.key("mesh"));
+  if (shows_group_look(node)) check_index(d->mesh, scene_.meshes.size(), "meshes", at.key("extras"));
+  if (instanced(node)) return add_instances(node);
+  const std::uint64_t id = next_id(d == nullptr ? kNone : d->object, at);
+  put(id, node, 0, (flags_[node] & kOwnFrame) != 0 ? Transform() : n.local);
+  if (has_looks(node)) add_looks(node, ObjectId(id));
 }
 
 /// The children's visibility tracks, of which exactly one shows at any time, become one mesh track.
@@ -471,6 +500,7 @@ void ObjectBuilder::finish_visibility() {
 Origins ObjectBuilder::build() {
   mark_used();
   place_nodes();
+  find_stand_ins();
   add_objects(count_objects());
   add_cameras();
   add_names();

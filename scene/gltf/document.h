@@ -72,7 +72,8 @@ struct NodeDetail {
                 object_id = kNone;                                          ///< accessors of the instances
   std::uint32_t object = kNone, look = kNone, mesh = kNone, frame = kNone;  ///< extras.scenegen
   std::uint32_t visibility = kNone, looks = kNone;  ///< extras.scenegen: into the scene's timelines
-  std::string_view name;  ///< its name: of the object, not of the node
+  std::uint32_t stands_for = kNone;  ///< the node in whose place among the objects this one comes
+  std::string_view name;             ///< its name: of the object, not of the node
 };
 struct Node {
   Transform local;

@@ -78,7 +78,7 @@ void PatchedDocument::emit_part(Part part, TextOut& out) const {
     case Part::new_nodes:
       return emit_new_nodes(out);
     case Part::accessors:
-      return emit_accessors(tracks_, NodePlan(), nodes_.animation, buffers_.animation, out);
+      return emit_accessors(tracks_, NodePlan(tracks_), nodes_.animation, buffers_.animation, out);
     case Part::views:
       return emit_views(out);
     case Part::animation:
@@ -126,6 +126,8 @@ void PatchedDocument::emit_extras(const NewNode& node, TextOut& out) const {
   } else {
     out.raw(R"("name":)");
     out.string(in_.scene.objects.names[node.object.value]);
+    out.raw(R"(,"standsFor":)");
+    out.number(node.stands_for);
     if (node.object_mesh != kNone) {
       out.raw(R"(,"mesh":)");
       out.number(node.object_mesh);

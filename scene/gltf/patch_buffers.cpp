@@ -74,7 +74,7 @@ class BufferPlanner {
   BufferPatch plan(const NodePatch& nodes, const Scene& tracks) {
     out_.uri_of_buffer.resize(document_.buffers.size());
     out_.uri_of_image.resize(document_.images.size());
-    out_.animation = plan_buffer(tracks, NodePlan(), nodes.animation, kNoStreams);
+    out_.animation = plan_buffer(tracks, NodePlan(tracks), nodes.animation, kNoStreams);
     first_buffer();
     other_buffers();
     place_animation();
@@ -189,7 +189,7 @@ void write_patched_buffer(const PatchInput& input, const NodePatch& nodes, const
     sink.fill(0, align4(bytes.size()) - bytes.size());
   };
   if (plan.keeps_first) put(input.source.buffers[0]);
-  write_buffer(tracks, NodePlan(), nodes.animation, plan.animation, sink);
+  write_buffer(tracks, NodePlan(tracks), nodes.animation, plan.animation, sink);
   for (const EmbeddedImage& image : plan.images) put(input.scene.images[image.image].bytes);
 }
 

@@ -389,6 +389,7 @@ std::uint32_t PatchPlanner::add_leaf(const Task& task, std::uint32_t parent) {
   leaf.kind = NewNode::Kind::leaf;
   leaf.name = wish(name_of(task.object) + "/visible");
   leaf.object = task.object;
+  leaf.stands_for = task.node;
   leaf.pointer = by_pointer() && task.visibility.valid();
   const NodeDetail* const d = detail(task.node);
   if (d != nullptr && document_.ours && !document_.foreign) leaf.object_index = d->object;
@@ -592,7 +593,8 @@ void PatchPlanner::settle_names() {
 }
 
 void PatchPlanner::make_channels() {
-  AnimationPlanner planner(tracks_);
+  const FileTracks tracks(tracks_);
+  AnimationPlanner planner(tracks);
   out_.channels.reserve(wants_.size());
   for (const Want& want : wants_) {
     std::uint32_t sampler = 0;
@@ -601,7 +603,7 @@ void PatchPlanner::make_channels() {
         sampler = planner.scale_sampler({want.track, want.look}, want.shown);
         break;
       case Want::Kind::pointer:
-        sampler = planner.pointer_sampler(want.track);
+        sampler = planner.pointer_sampler({want.track, {}});
         break;
       case Want::Kind::value:
         sampler = planner.value_sampler(want.track, want.divisor);

@@ -40,6 +40,7 @@ struct NewNode {
   std::uint32_t mesh = kNone;
   std::uint32_t source = kNone;        ///< the file's node whose skin and weights it takes
   std::uint32_t object_mesh = kNone;   ///< leaf with looks: Objects::mesh
+  std::uint32_t stands_for = kNone;    ///< leaf: the object's node in the file
   ObjectId object;                     ///< leaf: whose name it keeps
   std::uint32_t object_index = kNone;  ///< leaf: extras.scenegen.object
   std::uint32_t look = 0;
