@@ -114,6 +114,9 @@ Result<TownRecipe> make_recipe(const TownOptions& o, std::vector<std::string>& n
   } else if (auto r = lay_out(o, recipe, notes); !r) {
     return forward_error(r);
   }
+  Result<MachinePlan> machines = plan_machines(recipe, o.machines, height_m(recipe));
+  if (!machines) return forward_error(machines);
+  recipe.machines = std::move(*machines);
   if (auto r = check_count(predict(recipe), "--extras"); !r) return forward_error(r);
   return recipe;
 }

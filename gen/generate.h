@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "gen/machines.h"
 #include "scene/result.h"
 #include "scene/scene.h"
 
@@ -33,13 +34,15 @@ struct TownOptions {
   std::string building_model;  ///< a file whose content stands in for each building; empty: build of bricks
   Roof roof = Roof::mixed;
   bool ground = true;
+  std::uint32_t machines = 0;  ///< moving equipment: a crane, two lorries, a crane, …
   std::uint64_t seed = 1;
 };
 
 struct Generated {
   Scene scene;
-  std::vector<std::uint8_t> exempt;  ///< per object: 1 = takes no appearance time (the ground)
+  std::vector<std::uint8_t> exempt;  ///< per object: 1 = takes no appearance time (ground, machines)
   std::vector<std::string> notes;
+  Machines machines;  ///< to be driven (drive_machines) when the objects have their times
 };
 
 /// What a scene will hold, computed without building it (for --dry-run); equal to what generating gives.

@@ -33,6 +33,12 @@ const Paint& paint_of(Look look) {
       {"street", {0.19F, 0.185F, 0.18F, 1.0F}, 0.95F},
       {"grass", {0.16F, 0.265F, 0.07F, 1.0F}, 1.0F},
       {"cargo", {0.62F, 0.36F, 0.12F, 1.0F}, 0.8F},
+      {"crane_yellow", {0.85F, 0.48F, 0.03F, 1.0F}, 0.5F},
+      {"lorry_red", {0.48F, 0.035F, 0.025F, 1.0F}, 0.35F},
+      {"lorry_blue", {0.03F, 0.12F, 0.36F, 1.0F}, 0.35F},
+      {"steel", {0.13F, 0.135F, 0.14F, 1.0F}, 0.6F},
+      {"rubber", {0.02F, 0.02F, 0.02F, 1.0F}, 0.9F},
+      {"cab_glass", {0.02F, 0.035F, 0.05F, 1.0F}, 0.1F},
   }};
   return paints[static_cast<std::size_t>(look)];
 }
@@ -95,6 +101,13 @@ MaterialId Palette::material(Look look) {
 MeshId Palette::mesh(GeometryId geometry, Look look, const char* name) {
   const MaterialId paint = material(look);
   scene_.meshes.push_back({name, {{geometry, paint}}});
+  return MeshId(scene_.meshes.size() - 1);
+}
+
+MeshId Palette::mesh(std::span<const std::pair<GeometryId, Look>> parts, const char* name) {
+  Mesh mesh{name, {}};
+  for (const auto& [geometry, look] : parts) mesh.primitives.push_back({geometry, material(look)});
+  scene_.meshes.push_back(std::move(mesh));
   return MeshId(scene_.meshes.size() - 1);
 }
 

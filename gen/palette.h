@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
+#include <utility>
 
 #include "gen/layout.h"
 #include "scene/scene.h"
@@ -26,8 +28,14 @@ enum class Look : std::uint8_t {
   street,
   grass,
   cargo,
+  crane_yellow,
+  lorry_red,
+  lorry_blue,
+  steel,
+  rubber,
+  cab_glass,  ///< of machines: dark and not see-through, there is nobody inside
 };
-constexpr std::size_t kLooks = 15;
+constexpr std::size_t kLooks = 21;
 
 /// What a part of a kind is made of; bricks and tiles have several looks, of which this is the first.
 [[nodiscard]] Look look_of(PartKind kind);
@@ -39,6 +47,8 @@ class Palette {
   /// Mesh of the unit box (or of `geometry`) in a look.
   MeshId box(Look look);
   MeshId mesh(GeometryId geometry, Look look, const char* name);
+  /// Mesh of several geometries, each in its look.
+  MeshId mesh(std::span<const std::pair<GeometryId, Look>> parts, const char* name);
   /// A unit box of its own for ground and streets: scaled to `size_m` the noise texture repeats every
   /// `repeat_m`. The tiling is in the texture coordinates: not every viewer knows KHR_texture_transform.
   MeshId ground(Look look, const glm::dvec3& size_m, double repeat_m);

@@ -129,15 +129,10 @@ class TownBuilder {
     pitch_m_ = recipe.building_m + recipe.spacing_m;
     first_m_ = -0.5 * (glm::dvec2(recipe.grid) * pitch_m_ - recipe.spacing_m);
     digits_ = {std::max(2, digits_of(recipe.grid.x - 1)), std::max(2, digits_of(recipe.grid.y - 1))};
-    for (const Layout& layout : recipe.layouts) {
-      stamps_.push_back(stamps_of(layout));
-      for (const Part& part : layout.parts) height_m_ = std::max(height_m_, part.box.hi_mm.z * 0.001);
-      height_m_ = std::max(height_m_, layout.size_mm.z * 0.001);
-    }
+    for (const Layout& layout : recipe.layouts) stamps_.push_back(stamps_of(layout));
     if (recipe.building_model) {
       building_resources_ = append_resources(scene_, *recipe.building_model);
       model_box_ = model_bounds(*recipe.building_model);
-      height_m_ = model_box_.size().y;
     }
     prepare_extras();
   }
@@ -151,6 +146,8 @@ class TownBuilder {
     }
     add_camera();
     out_.exempt.resize(scene_.objects.size(), 0);
+    out_.machines = place_machines(scene_, palette_, recipe_.machines);
+    out_.exempt.resize(scene_.objects.size(), 1);
   }
 
   [[nodiscard]] double extra_scale() const {
@@ -292,7 +289,8 @@ class TownBuilder {
     const glm::dvec2 half = -first_m_ + recipe_.plan.margin_mm * 0.001;
     Box bounds;
     bounds.add(glm::vec3(glm::dvec3(-half.x, 0, -half.y)));
-    bounds.add(glm::vec3(glm::dvec3(half.x, height_m_, half.y)));
+    bounds.add(glm::vec3(glm::dvec3(half.x, height_m(recipe_), half.y)));
+    if (!recipe_.machines.empty()) bounds.add(gen::bounds(recipe_.machines));
     scene_.cameras.push_back(framing_camera(bounds, 0.65F, 0.5F));
   }
 
@@ -303,7 +301,6 @@ class TownBuilder {
   Random tint_, firing_;
   glm::dvec2 pitch_m_{0}, first_m_{0};
   glm::ivec2 digits_{2, 2};
-  double height_m_ = 0;
   std::vector<Stamps> stamps_;
   std::vector<ExtraPlacer> placers_;
   std::vector<ExtraPlace> places_;
@@ -341,6 +338,16 @@ constexpr Prediction boxes(std::uint64_t count) {
 
 }  // namespace
 
+double height_m(const TownRecipe& recipe) {
+  if (recipe.building_model) return static_cast<double>(model_bounds(*recipe.building_model).size().y);
+  double highest_m = 0;
+  for (const Layout& layout : recipe.layouts) {
+    for (const Part& part : layout.parts) highest_m = std::max(highest_m, part.box.hi_mm.z * 0.001);
+    highest_m = std::max(highest_m, layout.size_mm.z * 0.001);
+  }
+  return highest_m;
+}
+
 std::size_t TownRecipe::layout_of(std::uint64_t index) const {
   if (layouts.size() < 2) return 0;
   return index > 0 && Random(seed, "roof").below(index, 4) == 0 ? 1 : 0;  // the first is always gabled
@@ -350,6 +357,7 @@ Prediction predict(const TownRecipe& recipe) {
   Prediction sum;
   const std::uint64_t buildings = std::uint64_t{recipe.grid.x} * recipe.grid.y;
   if (recipe.ground) sum = boxes(kGroundObjects);
+  add_times(sum, predict(recipe.machines), 1);
   if (recipe.building_model) {
     add_times(sum, counts_of(*recipe.building_model), buildings);
     return sum;

@@ -27,6 +27,7 @@ struct TownRecipe {
   std::optional<Scene> extra_model;
   glm::dvec3 extra_size_m{0};
 
+  MachinePlan machines;
   bool ground = true;
   bool unindexed_boxes = false;
   std::uint64_t seed = 1;
@@ -34,6 +35,9 @@ struct TownRecipe {
   /// Which layout building `index` has.
   [[nodiscard]] std::size_t layout_of(std::uint64_t index) const;
 };
+
+/// Of the highest building.
+[[nodiscard]] double height_m(const TownRecipe& recipe);
 
 [[nodiscard]] Prediction predict(const TownRecipe& recipe);
 [[nodiscard]] Generated build_town(const TownRecipe& recipe, std::vector<std::string> notes);

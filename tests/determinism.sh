@@ -30,4 +30,7 @@ check --grid 2x3 --curve morton --coherence 0.5 --layout nodes --visibility both
 check --grid 3x2 --curve row-prime --order=-z+y+x --layout groups --visibility pointer --cells 7x9x11
 check --test-set 32 --curve hilbert --coherence 0.3
 check --test-set 41
+check --grid 2x2 --machines 5 --profile construct --highlight construct=#ff8000
+check --grid 3x1 --machines 4 --profile drop --coherence 0.9
+check --profile move --move-offset 0.1,-3,7 --color pointer --layout nodes
 exit $failed

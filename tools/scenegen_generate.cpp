@@ -102,6 +102,7 @@ Result<Made> make(const GenerateRequest& r, const std::vector<std::string>& argu
       auto profiled = timeline::apply_curve_profiles(scene, activities, r.profile.options);
       if (!profiled) return forward_error(profiled);
     }
+    gen::drive_machines(scene, generated->machines, r.appearance.threads);
   }
   progress.stage(r.dry_run ? "measuring" : "writing " + r.output);
   auto file = r.dry_run ? gltf::predict(scene, r.output, r.file) : gltf::write(scene, r.output, r.file);

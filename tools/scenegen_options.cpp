@@ -104,6 +104,14 @@ void add_extra_options(Options& options, GenerateRequest& r) {
               "what an extra object looks like", Role::content);
 }
 
+void add_machine_options(Options& options, GenerateRequest& r) {
+  options.group("Machines");
+  options.add("--machines", whole_value<std::uint32_t>(r.town.machines, 0, 300),
+              "moving equipment, every third a tower crane that turns to where objects appear, the others "
+              "lorries that drive round blocks",
+              Role::content);
+}
+
 Value curve_value(std::optional<CurveKind>& target) {
   return choice_value<std::optional<CurveKind>>(target,
                                                 {{"hilbert", CurveKind::hilbert},
@@ -203,6 +211,7 @@ Options generate_options(GenerateRequest& r) {
   add_town_options(options, r);
   add_building_options(options, r);
   add_extra_options(options, r);
+  add_machine_options(options, r);
   add_appearance_options(options, r);
   add_profile_options(options, r.profile, ProfileSource::curve);
   add_output_options(options, r);
@@ -221,10 +230,10 @@ std::vector<Conflict> conflicts(const GenerateRequest& r) {
     for (const char* name : names) out.push_back({name, reason});
   };
   if (r.test_set != 0) {
-    refuse(
-        {"--grid", "--spacing", "--ground", "--brick", "--building-size", "--floor-courses", "--floors",
-         "--partitions", "--windows", "--window", "--roof", "--building-model", "--extras", "--extra-model"},
-        "cannot be used with --test-set, which fixes the scene");
+    refuse({"--grid", "--spacing", "--ground", "--brick", "--building-size", "--floor-courses", "--floors",
+            "--partitions", "--windows", "--window", "--roof", "--building-model", "--extras",
+            "--extra-model", "--machines"},
+           "cannot be used with --test-set, which fixes the scene");
   }
   if (!r.town.building_model.empty()) {
     refuse({"--brick", "--building-size", "--floor-courses", "--floors", "--partitions", "--windows",
@@ -235,7 +244,7 @@ std::vector<Conflict> conflicts(const GenerateRequest& r) {
   if (r.town.extras_per_floor == 0) refuse({"--extra-model"}, "needs --extras of 1 or more");
   if (!r.curve) {
     refuse({"--order", "--cells", "--interval", "--hold", "--coherence", "--visibility", "--profile",
-            "--profile-duration", "--highlight", "--color", "--drop-height", "--move-offset"},
+            "--profile-duration", "--highlight", "--color", "--drop-height", "--move-offset", "--machines"},
            "cannot be used with --curve none, which makes a static scene");
   } else {
     for (Conflict& conflict : profile_conflicts(r.profile, std::span(&r.profile.profile, 1)))
