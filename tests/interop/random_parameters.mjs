@@ -38,6 +38,7 @@ function townArguments() {
     '--building-size', `${between(3, 8)}x${between(3, 8)}`, '--floor-courses', String(between(4, 12)),
     '--floors', String(between(1, 3)), '--partitions', pick('on', 'off'), ...windows,
     '--roof', pick('mixed', 'gabled', 'flat', 'none'), ...extras,
+    ...(random() < 0.3 ? ['--machines', String(between(1, 5))] : []),
   ];
 }
 
@@ -52,9 +53,21 @@ function appearanceArguments() {
   ];
 }
 
+function profileArguments() {
+  const profile = pick('construct', 'demolish', 'temporary', 'drop', 'move', 'operate', 'neutral');
+  const highlighted = !['drop', 'neutral'].includes(profile);
+  return [
+    '--profile', profile, ...(profile !== 'neutral' && random() < 0.5 ? ['--profile-duration', real(0.01, 5)] : []),
+    ...(highlighted && random() < 0.5 ? ['--color', pick('swap', 'pointer')] : []),
+    ...(highlighted && random() < 0.3 ? ['--highlight', `${profile}=${pick('#ff8000', '#3060a080')}`] : []),
+    ...(profile === 'move' ? ['--move-offset', `${real(-9, 9)},0,${real(-9, 9)}`] : []),
+  ];
+}
+
 function drawArguments() {
   return [
     ...(random() < 0.1 ? ['--test-set', String(between(41, 48))] : townArguments()), ...appearanceArguments(),
+    ...(random() < 0.4 ? profileArguments() : []),
     '--seed', String(between(0, 1e9)), '--layout', pick('auto', 'nodes', 'groups', 'instances'),
     '--threads', String(between(0, 4)), ...(random() < 0.2 ? ['--draco', '--draco-level', String(between(0, 10))] : []),
   ];
