@@ -85,6 +85,7 @@ struct Sampler {
 struct Texture {
   ImageId image;  ///< none when the image is of a kind we do not read
   Sampler sampler;
+  friend bool operator==(const Texture&, const Texture&) = default;
 };
 
 /// Use of a texture by a material, with KHR_texture_transform. uv' = T(offset) R(rotation) S(scale) uv.
@@ -116,6 +117,7 @@ struct Material {
   TextureUse normal_texture;
   TextureUse occlusion_texture;
   TextureUse emissive_texture;
+  friend bool operator==(const Material&, const Material&) = default;
 };
 
 // ---- Time
@@ -238,6 +240,7 @@ struct Calendar {
 
 struct SceneInfo {
   std::string generator;  ///< "scenegen 0.1.0"; of a foreign file: its asset.generator
+  std::string copyright;  ///< asset.copyright, kept in all that is made of the file
   std::optional<std::uint64_t> seed;
   std::vector<std::string>
       arguments;  ///< canonical: everything that decides the content, nothing that does not

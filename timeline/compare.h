@@ -32,7 +32,7 @@ struct Comparison {
 
 /// Compares objects (matched by name), geometry and materials by content, cameras, and the state at every
 /// event time of either scene, just before it, and between keys. Order of arrays, sharing and layout do not
-/// matter.
+/// matter, nor whether an object's size is in its mesh or in its scale.
 [[nodiscard]] Comparison compare(const Scene& a, const Scene& b, const CompareOptions& options = {});
 
 }  // namespace scenegen::timeline

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "scene/axis_affine.h"
 #include "timeline/compare_report.h"
 #include "timeline/compare_surface.h"
 
@@ -64,30 +65,62 @@ bool ContentComparer::close(float a, float b) const {
 }
 
 const std::vector<ContentFault>& ContentComparer::mesh_faults(MeshId a, MeshId b) {
+  return mesh_pair(a, b).faults;
+}
+
+const ContentComparer::Stretch* ContentComparer::stretch(MeshId a, MeshId b) {
+  const MeshPair& pair = mesh_pair(a, b);
+  return pair.stretch ? &*pair.stretch : nullptr;
+}
+
+bool ContentComparer::exact() const {
+  return options_.geometry_tolerance <= 0.0F && options_.normal_tolerance <= 0.0F;
+}
+
+std::optional<ContentComparer::Stretch> ContentComparer::find_stretch(const Mesh& a, const Mesh& b) const {
+  if (const auto affine = axis_affine(a_, a, b_, b)) return Stretch{affine->matrix()};
+  if (exact()) return std::nullopt;
+  const auto affine = box_affine(a_, a, b_, b);
+  if (!affine) return std::nullopt;
+  for (std::size_t i = 0; i < a.primitives.size(); ++i) {
+    Geometry stretched = a_.geometries[a.primitives[i].geometry.value];
+    for (glm::vec3& p : stretched.positions_m) p = affine->scale * p + affine->offset_m;
+    if (!surface_difference(stretched, b_.geometries[b.primitives[i].geometry.value], options_).empty())
+      return std::nullopt;
+  }
+  return Stretch{affine->matrix(), true};
+}
+
+ContentComparer::MeshPair& ContentComparer::mesh_pair(MeshId a, MeshId b) {
   const auto [found, is_new] = mesh_pairs_.try_emplace(pair_key(a.value, b.value));
-  std::vector<ContentFault>& faults = found->second;
-  if (!is_new) return faults;
+  MeshPair& pair = found->second;
+  if (!is_new) return pair;
   const auto& of_a = a_.meshes[a.value].primitives;
   const auto& of_b = b_.meshes[b.value].primitives;
   if (of_a.size() != of_b.size()) {
-    faults.push_back({ContentFault::Kind::primitive_count, a.value, b.value});
-    return faults;
+    pair.faults.push_back({ContentFault::Kind::primitive_count, a.value, b.value});
+    return pair;
   }
+  bool same_shape = true, same_look = true;
   for (std::size_t i = 0; i < of_a.size(); ++i) {
-    if (!same_geometry(of_a[i].geometry, of_b[i].geometry)) {
-      faults.push_back({ContentFault::Kind::geometry, of_a[i].geometry.value, of_b[i].geometry.value});
+    same_shape = same_geometry(of_a[i].geometry, of_b[i].geometry) && same_shape;
+    same_look = same_material(of_a[i].material, of_b[i].material) && same_look;
+  }
+  if (!same_shape && same_look) pair.stretch = find_stretch(a_.meshes[a.value], b_.meshes[b.value]);
+  for (std::size_t i = 0; i < of_a.size(); ++i) {
+    if (!pair.stretch && !same_geometry(of_a[i].geometry, of_b[i].geometry)) {
+      pair.faults.push_back({ContentFault::Kind::geometry, of_a[i].geometry.value, of_b[i].geometry.value});
     }
     if (!same_material(of_a[i].material, of_b[i].material)) {
-      faults.push_back({ContentFault::Kind::material, of_a[i].material.value, of_b[i].material.value});
+      pair.faults.push_back({ContentFault::Kind::material, of_a[i].material.value, of_b[i].material.value});
     }
   }
-  return faults;
+  return pair;
 }
 
 std::string ContentComparer::content_difference(const Geometry& a, const Geometry& b) const {
   std::string difference = geometry_difference(a, b);
-  const bool exact = options_.geometry_tolerance <= 0.0F && options_.normal_tolerance <= 0.0F;
-  return exact || difference.empty() ? difference : surface_difference(a, b, options_);
+  return exact() || difference.empty() ? difference : surface_difference(a, b, options_);
 }
 
 bool ContentComparer::same_geometry(GeometryId a, GeometryId b) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -26,6 +28,13 @@ class ContentComparer {
 
   /// The reference holds until the next call.
   [[nodiscard]] const std::vector<ContentFault>& mesh_faults(MeshId a, MeshId b);
+  /// Where mesh b is mesh a stretched along its axes and shifted (scene/axis_affine.h): b_from_a. That is no
+  /// fault of the meshes; placements have to make up for it. Null: the same shape, or another one.
+  struct Stretch {
+    glm::mat4 b_from_a;
+    bool rounded = false;  ///< known within the geometry tolerance only
+  };
+  [[nodiscard]] const Stretch* stretch(MeshId a, MeshId b);
   [[nodiscard]] std::string where(const ContentFault& fault) const;
   [[nodiscard]] std::string what(const ContentFault& fault) const;
 
@@ -40,7 +49,15 @@ class ContentComparer {
   const Scene& a_;
   const Scene& b_;
   CompareOptions options_;
-  std::unordered_map<std::uint64_t, std::vector<ContentFault>> mesh_pairs_;
+  struct MeshPair {
+    std::vector<ContentFault> faults;
+    std::optional<Stretch> stretch;
+  };
+  MeshPair& mesh_pair(MeshId a, MeshId b);
+  [[nodiscard]] std::optional<Stretch> find_stretch(const Mesh& a, const Mesh& b) const;
+  [[nodiscard]] bool exact() const;
+
+  std::unordered_map<std::uint64_t, MeshPair> mesh_pairs_;
   std::unordered_map<std::uint64_t, bool> geometry_pairs_, material_pairs_;
 };
 

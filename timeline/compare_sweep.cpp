@@ -150,8 +150,10 @@ void Sweep::look_at_changes(const ChangeSet& of_a, const ChangeSet& of_b) {
   for_each_changed(of_a.hidden, of_b.hidden, visibility_of);
   for_each_changed(of_a.moved, of_b.moved,
                    [this](std::uint32_t a, std::uint32_t b) { check_transform(a, b); });
-  for_each_changed(of_a.remeshed, of_b.remeshed,
-                   [this](std::uint32_t a, std::uint32_t b) { check_look(a, b); });
+  for_each_changed(of_a.remeshed, of_b.remeshed, [this](std::uint32_t a, std::uint32_t b) {
+    check_look(a, b);
+    check_transform(a, b);  // other meshes may be stretched differently
+  });
   for (const MaterialId m : of_a.recolored) {
     for (const std::uint32_t pair : pairs_of_a_[m.value]) check_colors(pairs_[pair]);
   }
@@ -186,9 +188,15 @@ void Sweep::check_visibility(std::uint32_t a, std::uint32_t b) {
 
 void Sweep::check_transform(std::uint32_t a, std::uint32_t b) {
   const glm::mat4 in_a = player_a_.world_from_object(ObjectId(a));
-  const glm::mat4 in_b = player_b_.world_from_object(ObjectId(b));
-  if (!begins(a, Fault::transform, !same_place(in_a, in_b))) return;
-  differences_.add([&] { return object_now(a); }, [&] { return place_difference(in_a, in_b); });
+  glm::mat4 in_b = player_b_.world_from_object(ObjectId(b));
+  const auto* const stretch = content_.stretch(player_a_.mesh(ObjectId(a)), player_b_.mesh(ObjectId(b)));
+  float tolerance = options_.transform_tolerance;
+  if (stretch != nullptr) {
+    in_b = in_b * stretch->b_from_a;  // where it puts the vertices of A's mesh
+    if (stretch->rounded) tolerance = std::max(tolerance, options_.geometry_tolerance);
+  }
+  if (!begins(a, Fault::transform, !same_place(in_a, in_b, tolerance))) return;
+  differences_.add([&] { return object_now(a); }, [&] { return place_difference(in_a, in_b, tolerance); });
 }
 
 void Sweep::check_look(std::uint32_t a, std::uint32_t b) {
@@ -255,30 +263,30 @@ void Sweep::check_colors(MaterialPair& pair) {
 void Sweep::check_camera(CameraPair& pair) {
   const glm::mat4 in_a = player_a_.world_from_camera(pair.a);
   const glm::mat4 in_b = player_b_.world_from_camera(pair.b);
-  const bool differs = !same_place(in_a, in_b);
+  const bool differs = !same_place(in_a, in_b, options_.transform_tolerance);
   if (std::exchange(pair.differs, differs) || !differs) return;
   differences_.add([&] { return "camera '" + a_.cameras[pair.a.value].name + "'" + now(); },
-                   [&] { return place_difference(in_a, in_b); });
+                   [&] { return place_difference(in_a, in_b, options_.transform_tolerance); });
 }
 
-bool Sweep::same_place(const glm::mat4& a, const glm::mat4& b) const {
+bool Sweep::same_place(const glm::mat4& a, const glm::mat4& b, float tolerance) const {
   if (std::memcmp(&a, &b, sizeof a) == 0) return true;
-  if (!close(a[3], b[3], options_.transform_tolerance * size_m_)) return false;
+  if (!close(a[3], b[3], tolerance * size_m_)) return false;
   for (int axis = 0; axis < 3; ++axis) {
     const float length = std::max(glm::length(a[axis]), glm::length(b[axis]));
-    if (!close(a[axis], b[axis], options_.transform_tolerance * length)) return false;
+    if (!close(a[axis], b[axis], tolerance * length)) return false;
   }
   return true;
 }
 
-std::string Sweep::place_difference(const glm::mat4& a, const glm::mat4& b) const {
-  if (!close(a[3], b[3], options_.transform_tolerance * size_m_)) {
+std::string Sweep::place_difference(const glm::mat4& a, const glm::mat4& b, float tolerance) const {
+  if (!close(a[3], b[3], tolerance * size_m_)) {
     return a_and_b("at", vector_text(glm::vec3(a[3])), vector_text(glm::vec3(b[3])));
   }
   const char* const names[] = {"x axis", "y axis", "z axis"};
   for (int axis = 0; axis < 3; ++axis) {
     const float length = std::max(glm::length(a[axis]), glm::length(b[axis]));
-    if (close(a[axis], b[axis], options_.transform_tolerance * length)) continue;
+    if (close(a[axis], b[axis], tolerance * length)) continue;
     return a_and_b(names[axis], vector_text(glm::vec3(a[axis])), vector_text(glm::vec3(b[axis])));
   }
   return {};

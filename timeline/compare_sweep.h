@@ -60,8 +60,8 @@ class Sweep {
   /// True if a difference begins.
   bool begins(std::uint32_t a, Fault fault, bool differs);
   void add_material_pairs(MeshId a, MeshId b, std::uint32_t object);
-  [[nodiscard]] bool same_place(const glm::mat4& a, const glm::mat4& b) const;
-  [[nodiscard]] std::string place_difference(const glm::mat4& a, const glm::mat4& b) const;
+  [[nodiscard]] bool same_place(const glm::mat4& a, const glm::mat4& b, float tolerance) const;
+  [[nodiscard]] std::string place_difference(const glm::mat4& a, const glm::mat4& b, float tolerance) const;
   [[nodiscard]] std::string object_now(std::uint32_t a) const;
   [[nodiscard]] std::string now() const;
 

@@ -14,7 +14,8 @@ struct Verb {
   std::string_view name;
   int (*run)(std::span<const std::string>);
 };
-constexpr std::array<Verb, 2> kVerbs{{{"inspect", inspect_verb}, {"diff", diff_verb}}};
+constexpr std::array<Verb, 3> kVerbs{
+    {{"inspect", inspect_verb}, {"diff", diff_verb}, {"optimize", optimize_verb}}};
 
 int run(std::span<const std::string> arguments) {
   if (arguments.empty()) {

@@ -10,6 +10,7 @@ namespace scenegen::tools {
 int generate_verb(std::span<const std::string> arguments);
 int inspect_verb(std::span<const std::string> arguments);
 int diff_verb(std::span<const std::string> arguments);
+int optimize_verb(std::span<const std::string> arguments);
 
 /// What `scenegen` says when it is called without arguments.
 [[nodiscard]] std::string generate_short_help();

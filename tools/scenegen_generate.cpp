@@ -1,7 +1,6 @@
 // scenegen [options]: parameters -> scene -> appearance times -> file.
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 
 #include "gen/generate.h"
 #include "scene/gltf/write.h"
@@ -25,30 +24,11 @@ struct Made {
   double seconds = 0;
 };
 
-bool is_folder(const std::filesystem::path& path) {
-  std::error_code ignored;
-  return std::filesystem::is_directory(path, ignored);
-}
-
-Result<void> check_output(const GenerateRequest& r) {
-  if (r.dry_run) return {};
-  if (r.output == "-") {
-    if (!terminal(1)) return {};
-    return fail(ErrorKind::usage, "--output",
-                "a .glb is not for a terminal; send stdout to a file or a program");
-  }
-  const std::filesystem::path path(r.output);
-  if (path.extension() != ".glb" && path.extension() != ".gltf" && path.has_filename() && !is_folder(path)) {
-    return fail(ErrorKind::usage, "--output",
-                "'" + r.output + "' ends neither in .glb nor in .gltf (nearest: '" +
-                    std::filesystem::path(path).replace_extension(".glb").string() + "')");
-  }
-  return check_output_file(r.output);
-}
-
 Result<void> check(const GenerateRequest& r, const Options& options) {
   if (auto allowed = options.refuse(conflicts(r)); !allowed) return allowed;
-  if (auto writable = check_output(r); !writable) return writable;
+  if (!r.dry_run) {
+    if (auto writable = check_scene_output(r.output); !writable) return writable;
+  }
   if (r.report.empty() || r.report == "-") return {};
   return check_output_file(r.report);
 }
@@ -178,6 +158,7 @@ Report report(const GenerateRequest& r, const Made& made, const std::vector<std:
   add("channels", made.file.channels);
   add("samplers", made.file.samplers);
   add("accessors", made.file.accessors);
+  add("draws", made.file.draws);
   if (made.file.layout == gltf::Layout::instances) {
     add("groups", made.file.instance_groups);
     add("objectsPerGroup", objects_per_group(made));
@@ -223,6 +204,8 @@ std::string generate_short_help() {
          "  scenegen inspect town.glb                                          what is in a file\n"
          "  scenegen diff a.glb b.glb                                          are two files the same "
          "scene?\n"
+         "  scenegen optimize town.glb -o small.glb                            the same scene in a smaller "
+         "file\n"
          "  sceneplay frames town.glb -o pictures                              see it\n"
          "\n"
          "scenegen --help lists every option with its default and range.\n";

@@ -1,6 +1,7 @@
 #include "tools/scenegen_options.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <thread>
 
 #include "scene/limits.h"
@@ -147,13 +148,7 @@ void add_output_options(Options& options, GenerateRequest& r) {
   options.add("-o,--output",
               text_value(r.output, "FILE", ".glb, .gltf with its .bin, - for a .glb on stdout"),
               "the file to write");
-  options.add("--layout", choice_value<gltf::Layout>(r.file.layout, layouts(), "LAYOUT"),
-              "how objects become glTF nodes (docs/FORMAT.md); auto: instances from " +
-                  std::to_string(gltf::kInstancesFrom) + " objects on, else nodes",
-              Role::content);
-  options.add("--visibility", choice_value<gltf::VisibilityEncoding>(r.file.visibility, encodings(), "HOW"),
-              "how hiding is written: animated scale plays everywhere, pointer is KHR_node_visibility",
-              Role::content);
+  add_file_options(options, r.file);
   options.add("--format", format_value(r.format), "form of what is printed on stdout");
   options.add("--report", text_value(r.report, "FILE"),
               "also write what was made, and how long it took, as JSON", Role::run, "none");
@@ -176,6 +171,33 @@ Value bits_value(std::uint32_t& target) {
 }
 
 }  // namespace
+
+void add_file_options(Options& options, gltf::WriteOptions& file) {
+  options.add("--layout", choice_value<gltf::Layout>(file.layout, layouts(), "LAYOUT"),
+              "how objects become glTF nodes (docs/FORMAT.md); auto: instances from " +
+                  std::to_string(gltf::kInstancesFrom) + " objects on, else nodes",
+              Role::content);
+  options.add("--visibility", choice_value<gltf::VisibilityEncoding>(file.visibility, encodings(), "HOW"),
+              "how hiding is written: animated scale plays everywhere, pointer is KHR_node_visibility",
+              Role::content);
+}
+
+Result<void> check_scene_output(const std::string& output) {
+  if (output == "-") {
+    if (!terminal(1)) return {};
+    return fail(ErrorKind::usage, "--output",
+                "a .glb is not for a terminal; send stdout to a file or a program");
+  }
+  const std::filesystem::path path(output);
+  std::error_code ignored;
+  const bool folder = std::filesystem::is_directory(path, ignored);
+  if (path.extension() != ".glb" && path.extension() != ".gltf" && path.has_filename() && !folder) {
+    return fail(ErrorKind::usage, "--output",
+                "'" + output + "' ends neither in .glb nor in .gltf (nearest: '" +
+                    std::filesystem::path(path).replace_extension(".glb").string() + "')");
+  }
+  return check_output_file(output);
+}
 
 void add_draco_options(Options& options, gltf::DracoOptions& draco) {
   options.group("Compression");
@@ -206,7 +228,7 @@ std::vector<Conflict> conflicts_of_draco(const gltf::DracoOptions& draco) {
 Options generate_options(GenerateRequest& r) {
   Options options("scenegen",
                   {"scenegen [options]              generate a scene", "scenegen inspect FILE [options]",
-                   "scenegen diff A B [options]"},
+                   "scenegen diff A B [options]", "scenegen optimize FILE -o OUT [options]"},
                   "makes a town of brick buildings that goes up along a space-filling curve, as glTF.");
   add_town_options(options, r);
   add_building_options(options, r);

@@ -43,6 +43,12 @@ struct GenerateRequest {
 /// Copies the seed and the threads to where the rooms look for them.
 void settle(GenerateRequest& request);
 
+/// --layout and --visibility.
+void add_file_options(Options& options, gltf::WriteOptions& file);
+
+/// Whether a scene can be written to `path` (option --output), before the long work.
+[[nodiscard]] Result<void> check_scene_output(const std::string& path);
+
 /// The group "Compression"; conflicts_of_draco() tells which of its options need --draco.
 void add_draco_options(Options& options, gltf::DracoOptions& draco);
 [[nodiscard]] std::vector<Conflict> conflicts_of_draco(const gltf::DracoOptions& draco);

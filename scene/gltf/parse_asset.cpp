@@ -92,6 +92,8 @@ void parse_asset(Value value, const Place& at, Document& out) {
       if (least != "2.0") reject(p, "'" + printable(least) + "'; this program reads 2.0");
     } else if (key == "generator") {
       out.info.generator = get_string(v, p);
+    } else if (key == "copyright") {
+      out.info.copyright = get_string(v, p);
     } else if (key == "extras" && is_object(v)) {
       each_field(v, p, [&](std::string_view owner, Value& w, const Place& q) {
         if (owner == "scenegen" && is_object(w)) parse_ours(w, q, out);

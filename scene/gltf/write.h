@@ -46,6 +46,7 @@ struct WriteReport {
   std::uint64_t bytes = 0;  ///< all files together
   std::uint64_t json_bytes = 0;
   std::uint64_t nodes = 0, channels = 0, samplers = 0, accessors = 0;
+  std::uint64_t draws = 0;                 ///< primitives of the meshes of all nodes
   Layout layout = Layout::nodes;           ///< the one used
   std::uint64_t instance_groups = 0;       ///< layout instances: objects that share an instancing node a look
   std::uint64_t instanced_objects = 0;     ///< in them; divided by them: objects per group

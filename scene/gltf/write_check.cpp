@@ -169,6 +169,7 @@ Result<void> check_names(const Scene& scene) {
 }
 
 Result<void> check_info(const Scene& scene) {
+  if (!is_utf8(scene.info.copyright)) return not_utf8("info.copyright");
   if (!scene.info.appearance) return {};
   const AppearanceInfo& a = *scene.info.appearance;
   Finite finite;

@@ -58,6 +58,7 @@ WriteReport Document::report() const {
   report.channels = channels_.channel_count;
   report.samplers = channels_.animation.samplers.size();
   report.accessors = buffer_.accessor_count;
+  report.draws = draws();
   report.layout = nodes_.layout;
   if (nodes_.layout == Layout::instances) {
     report.instance_groups = nodes_.groups.size();
@@ -67,6 +68,28 @@ WriteReport Document::report() const {
   report.notes = nodes_.notes;
   report_draco(report);
   return report;
+}
+
+/// Primitives of the meshes of all nodes.
+std::uint64_t Document::draws() const {
+  const auto of_mesh = [&](MeshId mesh) { return std::uint64_t{scene_.meshes[mesh.value].primitives.size()}; };
+  std::uint64_t count = 0;
+  for (const GroupNode& node : nodes_.group_nodes) {
+    const Group& group = nodes_.groups[node.group];
+    if (nodes_.layout == Layout::instances) {
+      count += of_mesh(node.look.valid() ? node.look : group.mesh);
+    } else if (node.look.valid()) {  // its objects have a node for each look
+      count += group.count * of_mesh(node.look);
+    }
+  }
+  auto look = nodes_.looks.begin();  // by object, as the loop is
+  for (std::uint32_t k = 0; k < nodes_.object_node_count(scene_); ++k) {
+    const std::uint32_t i = nodes_.object_at(k);
+    const bool has_looks = look != nodes_.looks.end() && look->object == i;
+    if (!has_looks && nodes_.look_group(i) == nullptr) count += of_mesh(scene_.objects.mesh[i]);
+    for (; look != nodes_.looks.end() && look->object == i; ++look) count += of_mesh(look->look);
+  }
+  return count;
 }
 
 void Document::report_draco(WriteReport& report) const {
@@ -114,7 +137,12 @@ void Document::emit_json(std::string_view buffer_uri, ByteSink& sink) const {
 }
 
 void Document::emit_asset(TextOut& out) const {
-  out.raw(R"("asset":{"version":"2.0","generator":"scenegen )" SCENEGEN_VERSION R"(","extras":{"scenegen":)");
+  out.raw(R"("asset":{"version":"2.0","generator":"scenegen )" SCENEGEN_VERSION "\"");
+  if (!scene_.info.copyright.empty()) {
+    out.raw(R"(,"copyright":)");
+    out.string(scene_.info.copyright);
+  }
+  out.raw(R"(,"extras":{"scenegen":)");
   emit_scenegen(scene_, {name_of(nodes_.layout), nodes_.visibility, {}}, out);
   out.raw("}}");
 }

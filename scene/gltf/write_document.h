@@ -42,6 +42,7 @@ class Document : public FileContent {
 
  private:
   void report_draco(WriteReport& report) const;
+  [[nodiscard]] std::uint64_t draws() const;
   void emit_asset(TextOut& out) const;
   void emit_extensions(TextOut& out) const;
   void emit_scenes(TextOut& out) const;

@@ -1,0 +1,259 @@
+// scenegen optimize FILE -o OUT: the same scene in a smaller file that draws with fewer calls.
+#include "scene/gltf/read.h"
+#include "scene/gltf/survey.h"
+#include "scene/gltf/write.h"
+#include "scene/optimize/optimize.h"
+#include "timeline/timeline.h"
+#include "tools/output.h"
+#include "tools/scenegen.h"
+#include "tools/scenegen_options.h"
+
+namespace scenegen::tools {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+struct OptimizeRequest {
+  std::string input;
+  std::string output;
+  gltf::WriteOptions file;
+  bool allow_loss = false;
+  std::string report;
+  Format format = Format::table;
+  bool dry_run = false;
+  bool quiet = false;
+};
+
+/// What was there, what was done, what is there now.
+struct Optimized {
+  std::uint64_t bytes_before = 0, objects = 0, moments = 0;
+  gltf::Survey before;
+  OptimizeReport content;
+  gltf::WriteReport file;
+  double seconds = 0;
+};
+
+std::vector<Conflict> conflicts(const OptimizeRequest& r) {
+  std::vector<Conflict> out = conflicts_of_draco(r.file.draco);
+  if (r.output == "-" && !r.dry_run)
+    out.push_back(
+        {"--format",
+         "cannot be used with --output -, which puts the .glb on stdout (--report FILE writes JSON)"});
+  if (r.report == "-") {
+    out.push_back({"--format", "cannot be used with --report -, which puts the report on stdout"});
+    if (r.output == "-" && !r.dry_run)
+      out.push_back({"--report", "cannot be used with --output -: stdout takes one of them"});
+  }
+  return out;
+}
+
+Result<void> check(const OptimizeRequest& r, const Options& options) {
+  if (auto allowed = options.refuse(conflicts(r)); !allowed) return allowed;
+  if (r.output.empty() && !r.dry_run)
+    return fail(ErrorKind::usage, "--output", "is missing: say which file to write (-o small.glb)");
+  if (!r.dry_run) {
+    if (auto writable = check_scene_output(r.output); !writable) return writable;
+  }
+  return r.report.empty() || r.report == "-" ? Result<void>() : check_output_file(r.report);
+}
+
+std::string listed(const std::vector<gltf::Ignored>& losses) {
+  constexpr std::size_t kMost = 3;
+  std::string out;
+  for (std::size_t i = 0; i < std::min(losses.size(), kMost); ++i) {
+    const gltf::Ignored& loss = losses[i];
+    out += (i == 0 ? "" : "; ") + loss.what + " (" + loss.where;
+    out += loss.count > 1 ? " and " + human_count(loss.count - 1) + " more)" : ")";
+  }
+  if (losses.size() > kMost) out += "; and " + human_count(losses.size() - kMost) + " kinds more";
+  return out;
+}
+
+Result<Optimized> run(const OptimizeRequest& r) {
+  const Stopwatch stopwatch;
+  Progress progress("reading " + r.input, 0, r.quiet);
+  auto read = gltf::read(r.input, {.keep_source = true});
+  if (!read) return forward_error(read);
+  Optimized out;
+  auto before = gltf::survey(*read);
+  if (!before) return forward_error(before);
+  if (!before->losses.empty() && !r.allow_loss)
+    return fail(
+        ErrorKind::bad_input, read->source->path,
+        "rewriting it would lose " + listed(before->losses) + ": give --allow-loss to write it without");
+  out.before = std::move(*before);
+  out.bytes_before = read->file_bytes;
+  read->source.reset();
+  progress.stage("optimizing");
+  out.content = optimize(read->scene);
+  out.objects = read->scene.objects.size();
+  out.moments = timeline::compile(read->scene)->visibility_times_s().size();
+  progress.stage(r.dry_run ? "measuring" : "writing " + r.output);
+  auto file = r.dry_run ? gltf::predict(read->scene, r.output.empty() ? "-" : r.output, r.file)
+                        : gltf::write(read->scene, r.output, r.file);
+  if (!file) return forward_error(file);
+  out.file = std::move(*file);
+  out.seconds = stopwatch.seconds();
+  return out;
+}
+
+double share(const Optimized& made) {
+  return made.bytes_before == 0
+             ? 0
+             : static_cast<double>(made.file.bytes) / static_cast<double>(made.bytes_before);
+}
+
+void add_change(Report& out, const std::string& key, const std::string& label, std::uint64_t before,
+                std::uint64_t after, const std::string& remark = {}) {
+  std::string text = human_count(before) + " -> " + human_count(after);
+  if (!remark.empty()) text += "  (" + remark + ")";
+  out.add({key, label, {{"before", before}, {"after", after}}, text});
+}
+
+std::string joined(std::uint64_t equal, std::uint64_t stretched = 0) {
+  std::string out = equal == 0 ? "" : human_count(equal) + " equal to others";
+  if (stretched > 0) out += (out.empty() ? "" : ", ") + human_count(stretched) + " stretched copies";
+  return out;
+}
+
+Report report(const OptimizeRequest& r, const Optimized& made) {
+  const OptimizeReport& c = made.content;
+  Report out("scenegen/optimize", 1);
+  const auto add = [&out](std::string key, ordered_json value) {
+    out.add({std::move(key), {}, std::move(value), {}});
+  };
+  add("input", r.input);
+  add("output", r.output);
+  add("dryRun", r.dry_run);
+  add("objects", made.objects);
+  add("moments", made.moments);
+  add("layout", layout_name(made.file.layout));
+  add("visibility", visibility_name(r.file.visibility));
+  out.section("File");
+  out.add({"bytes",
+           "size",
+           {{"before", made.bytes_before}, {"after", made.file.bytes}},
+           human_bytes(made.bytes_before) + " -> " + human_bytes(made.file.bytes) + "  (" +
+               human_real(100 * share(made), 1) + " %)"});
+  add_change(out, "draws", "draws", made.before.draws, made.file.draws);
+  add_change(out, "nodes", "nodes", made.before.nodes, made.file.nodes);
+  add_change(out, "channels", "channels", made.before.channels, made.file.channels);
+  add_change(out, "accessors", "accessors", made.before.accessors, made.file.accessors);
+  out.section("Content");
+  add_change(out, "meshes", "meshes", made.before.meshes, c.after.meshes,
+             joined(c.equal_meshes, c.stretched_meshes));
+  add_change(out, "geometries", "geometries", c.before.geometries, c.after.geometries,
+             joined(c.equal_geometries));
+  add_change(out, "materials", "materials", made.before.materials, c.after.materials,
+             joined(c.equal_materials));
+  add_change(out, "textures", "textures", made.before.textures, c.after.textures, joined(c.equal_textures));
+  add_change(out, "images", "images", made.before.images, c.after.images, joined(c.equal_images));
+  add_change(out, "frames", "frames", c.before.frames, c.after.frames,
+             c.unframed_objects == 0
+                 ? ""
+                 : human_count(c.unframed_objects) + " objects left frames that never move");
+  add_change(
+      out, "tracks", "timelines", c.before.tracks, c.after.tracks,
+      c.constant_tracks == 0 ? joined(c.equal_tracks) : human_count(c.constant_tracks) + " changed nothing");
+  add_change(out, "keys", "keys", c.before.keys, c.after.keys);
+  for (const auto& [key, value] : {std::pair{"equalMeshes", c.equal_meshes},
+                                   {"stretchedMeshes", c.stretched_meshes},
+                                   {"stretchedObjects", c.stretched_objects},
+                                   {"equalGeometries", c.equal_geometries},
+                                   {"equalMaterials", c.equal_materials},
+                                   {"equalTextures", c.equal_textures},
+                                   {"equalImages", c.equal_images},
+                                   {"equalTracks", c.equal_tracks},
+                                   {"constantTracks", c.constant_tracks},
+                                   {"idleKeys", c.idle_keys},
+                                   {"unframedObjects", c.unframed_objects}})
+    add(key, value);
+  if (r.file.draco.on) {
+    add("dracoGeometries", made.file.draco_geometries);
+    add("dracoBytes", made.file.draco_bytes);
+    add("dracoLeft", made.file.draco_left);
+  }
+  ordered_json lost = ordered_json::array();
+  for (const gltf::Ignored& loss : made.before.losses)
+    lost.push_back({{"where", loss.where}, {"what", loss.what}, {"count", loss.count}});
+  add("lost", std::move(lost));
+  add("notes", made.file.notes);
+  add("seconds", made.seconds);
+  return out;
+}
+
+/// "small.glb  4.1 MB (17 % of 23.8 MB)  200 000 objects  4 096 moments  1.2 s"
+std::string finished_line(const OptimizeRequest& r, const Optimized& made) {
+  const std::string name = r.output.empty() ? r.input : r.output == "-" ? "stdout" : r.output;
+  return name + (r.dry_run ? "  (not written)  " : "  ") + human_bytes(made.file.bytes) + " (" +
+         human_real(100 * share(made), 1) + " % of " + human_bytes(made.bytes_before) + ")  " +
+         human_count(made.objects) + " objects  " + human_count(made.moments) + " moments  layout " +
+         layout_name(made.file.layout) + "  " + human_seconds(made.seconds) + "\n";
+}
+
+Result<void> say(const OptimizeRequest& r, const Optimized& made) {
+  const Report facts = report(r, made);
+  if (!r.quiet) {
+    if (!made.before.losses.empty())
+      (void)std::fprintf(stderr, "note: lost %s\n", printable(listed(made.before.losses)).c_str());
+    for (const std::string& note : made.file.notes)
+      (void)std::fprintf(stderr, "note: %s\n", printable(note).c_str());
+  }
+  if (!r.report.empty()) {
+    if (auto written = write_file(r.report, pretty(facts.json())); !written) return written;
+  }
+  if (r.format != Format::table) return write_stdout(facts.str(r.format));
+  if (r.quiet) return {};
+  const std::string text = facts.str(Format::table) + "\n" + finished_line(r, made);
+  const bool stdout_taken = r.report == "-" || (r.output == "-" && !r.dry_run);
+  if (!stdout_taken) return write_stdout(text);
+  (void)std::fputs(text.c_str(), stderr);
+  return {};
+}
+
+Options optimize_options(OptimizeRequest& r) {
+  Options options(
+      "scenegen optimize", {"scenegen optimize FILE -o OUT [options]"},
+      "writes the same scene smaller and with fewer draws: equal meshes, materials, images and timelines "
+      "become one, stretched copies of a mesh share it, objects that appear together are grouped. What is "
+      "seen does not change at any time.");
+  options.positional("FILE", r.input, "a .glb or .gltf file");
+  options.group("Output");
+  options.add("-o,--output",
+              text_value(r.output, "FILE", ".glb, .gltf with its .bin, - for a .glb on stdout"),
+              "the file to write", Role::run, "none");
+  add_file_options(options, r.file);
+  options.flag("--allow-loss", r.allow_loss,
+               "write although the file holds what would be lost: skins, morph targets, lights, further "
+               "animations, extras and extensions that this program does not know");
+  options.add("--format", format_value(r.format), "form of what is printed on stdout");
+  options.add("--report", text_value(r.report, "FILE"), "also write what was done, as JSON", Role::run,
+              "none");
+  options.flag("--dry-run", r.dry_run, "measure and write nothing");
+  add_draco_options(options, r.file.draco);
+  options.group("General");
+  options.add_general(r.quiet);
+  return options;
+}
+
+}  // namespace
+
+int optimize_verb(std::span<const std::string> arguments) {
+  OptimizeRequest request;
+  Options options = optimize_options(request);
+  const Result<Action> action = options.parse(arguments);
+  if (!action) return report_error(action.error());
+  if (*action != Action::run) {
+    const auto written =
+        write_stdout(*action == Action::help ? options.help(colored(1)) : "scenegen " SCENEGEN_VERSION "\n");
+    return written ? 0 : report_error(written.error());
+  }
+  if (auto usable = check(request, options); !usable) return report_error(usable.error());
+  const auto made = run(request);
+  if (!made) return report_error(made.error());
+  const auto said = say(request, *made);
+  return said ? 0 : report_error(said.error());
+}
+
+}  // namespace scenegen::tools
