@@ -72,6 +72,8 @@ std::string listed(const std::vector<gltf::Ignored>& losses) {
 
 Result<Optimized> run(const OptimizeRequest& r) {
   const Stopwatch stopwatch;
+  gltf::WriteOptions file_options = r.file;
+  file_options.id_table = true;
   Progress progress("reading " + r.input, 0, r.quiet);
   auto read = gltf::read(r.input, {.keep_source = true});
   if (!read) return forward_error(read);
@@ -90,8 +92,8 @@ Result<Optimized> run(const OptimizeRequest& r) {
   out.objects = read->scene.objects.size();
   out.moments = timeline::compile(read->scene)->visibility_times_s().size();
   progress.stage(r.dry_run ? "measuring" : "writing " + r.output);
-  auto file = r.dry_run ? gltf::predict(read->scene, r.output.empty() ? "-" : r.output, r.file)
-                        : gltf::write(read->scene, r.output, r.file);
+  auto file = r.dry_run ? gltf::predict(read->scene, r.output.empty() ? "-" : r.output, file_options)
+                        : gltf::write(read->scene, r.output, file_options);
   if (!file) return forward_error(file);
   out.file = std::move(*file);
   out.seconds = stopwatch.seconds();

@@ -68,6 +68,8 @@ class ObjectBuilder {
   template <class F>
   void each_object_node(const F& f);
   std::uint64_t instance_count(std::uint32_t node);
+  void load_ids();
+  std::vector<std::uint32_t> instance_ids(const NodeDetail& d, std::uint64_t count, const Place& at);
   std::uint64_t count_objects();
   void add_objects(std::uint64_t count);
   void add_objects_of(std::uint32_t node);
@@ -95,6 +97,8 @@ class ObjectBuilder {
   std::vector<std::uint32_t> visible_;   ///< by node, ancestors included
   std::vector<std::uint32_t> stand_in_;  ///< by node; empty when there are none
   bool explicit_ids_ = false;
+  std::vector<std::uint32_t> ids_;  ///< of objects: docs/FORMAT.md 2 (ids)
+  bool ids_damaged_ = false;
   std::uint64_t next_ = 0;
   std::vector<bool> taken_;
   Origins origins_;
@@ -233,13 +237,46 @@ void ObjectBuilder::each_object_node(const F& f) {
   }
 }
 
+/// Table of ids of our own files. Tools that rebuild buffer views (see add_names) leave it damaged: then
+/// objects are numbered as they come, and names by number would be the wrong ones.
+void ObjectBuilder::load_ids() {
+  const std::uint32_t shown = document_.scene == kNone ? 0 : document_.scene;
+  if (!ours_alone() || document_.scenes.empty() || document_.scene_extras[shown].ids.view == kNone) return;
+  const Place scenes = root_.key("scenes");
+  const Place scene = scenes.at(shown);
+  const Place extras = scene.key("extras");
+  const Place ours = extras.key("scenegen");
+  const Place at = ours.key("ids");
+  try {
+    ids_ = decode_ids(document_.scene_extras[shown].ids, data_, at);
+  } catch (const Fault& fault) {
+    ids_damaged_ = true;
+    document_.ignored.add(at, "the table of object indices is damaged (" + fault.error.what + ")");
+  }
+}
+
+/// Indices of a node's instances; empty where it has none.
+std::vector<std::uint32_t> ObjectBuilder::instance_ids(const NodeDetail& d, std::uint64_t count,
+                                                       const Place& at) {
+  if (!explicit_ids_) return {};
+  if (d.object_id != kNone) return data_.integers(d.object_id, at.key("_OBJECT_ID"));
+  if (d.first_id == kNone) return {};
+  if (d.first_id > ids_.size() || count > ids_.size() - d.first_id)
+    reject(at, std::to_string(count) + " instances from " + std::to_string(d.first_id) + " of " +
+                   std::to_string(ids_.size()) + " indices");
+  const auto first = ids_.begin() + d.first_id;
+  return {first, first + static_cast<std::ptrdiff_t>(count)};
+}
+
 std::uint64_t ObjectBuilder::count_objects() {
   std::uint64_t count = 0;
+  load_ids();
   each_object_node([&](std::uint32_t node) {
     const NodeDetail* const d = detail(node);
     const bool many = instanced(node);
-    if (ours_alone() && d != nullptr && (d->object != kNone || (many && d->object_id != kNone)))
-      explicit_ids_ = true;
+    const bool has_id = d != nullptr && (d->object != kNone || (many && d->object_id != kNone) ||
+                                         (many && d->first_id != kNone));
+    if (ours_alone() && !ids_damaged_ && has_id) explicit_ids_ = true;
     const std::uint64_t here = many ? instance_count(node) : 1;
     if (here > limits::kMaxObjects - count) {
       reject(node_place(node), "more than " + std::to_string(limits::kMaxObjects) + " objects");
@@ -282,11 +319,10 @@ void ObjectBuilder::add_instances(std::uint32_t node) {
   const Place at = extension.key("attributes");
   const std::uint64_t count = instance_count(node);
   std::vector<float> translation, rotation, scale;
-  std::vector<std::uint32_t> ids;
+  const std::vector<std::uint32_t> ids = instance_ids(d, count, at);
   if (d.translation != kNone) translation = data_.floats(d.translation, 3, at.key("TRANSLATION"));
   if (d.rotation != kNone) rotation = data_.floats(d.rotation, 4, at.key("ROTATION"));
   if (d.scale != kNone) scale = data_.floats(d.scale, 3, at.key("SCALE"));
-  if (explicit_ids_ && d.object_id != kNone) ids = data_.integers(d.object_id, at.key("_OBJECT_ID"));
   for (std::uint64_t i = 0; i < count; ++i) {
     Transform transform;
     if (!translation.empty())
@@ -358,7 +394,7 @@ void ObjectBuilder::add_further_look(std::uint32_t node) {
   check_index(document_.nodes[node].mesh, scene_.meshes.size(), "meshes", here.key("mesh"));
   if (!explicit_ids_) reject(here, "a look of an object, but no object has an index");
   std::vector<std::uint32_t> ids{d.object};
-  if (instanced(node)) ids = data_.integers(d.object_id, here.key("_OBJECT_ID"));
+  if (instanced(node)) ids = instance_ids(d, instance_count(node), here);
   for (const std::uint32_t id : ids) {
     check_index(id, scene_.objects.size(), "objects", here);
     add_look_node(id, node);
@@ -425,7 +461,8 @@ void ObjectBuilder::add_names() {
   const std::size_t count = scene_.objects.size();
   UniqueNames names(scene_.objects.names, count);
   const std::uint32_t shown = document_.scene == kNone ? 0 : document_.scene;
-  if (document_.ours && !document_.scenes.empty() && document_.scene_extras[shown].names.view != kNone) {
+  if (document_.ours && !ids_damaged_ && !document_.scenes.empty() &&
+      document_.scene_extras[shown].names.view != kNone) {
     const Place scenes = root_.key("scenes");
     const Place scene = scenes.at(shown);
     const Place extras = scene.key("extras");

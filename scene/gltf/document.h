@@ -72,6 +72,7 @@ struct NodeDetail {
                 object_id = kNone;                                          ///< accessors of the instances
   std::uint32_t object = kNone, look = kNone, mesh = kNone, frame = kNone;  ///< extras.scenegen
   std::uint32_t visibility = kNone, looks = kNone;  ///< extras.scenegen: into the scene's timelines
+  std::uint32_t first_id = kNone;                   ///< extras.scenegen.ids: into the scene's table of ids
   std::uint32_t stands_for = kNone;  ///< the node in whose place among the objects this one comes
   std::string_view name;             ///< its name: of the object, not of the node
 };
@@ -90,6 +91,7 @@ struct Node {
 struct SceneRecord {
   std::uint32_t first_root = 0, root_count = 0;  ///< into Document::scene_roots
 };
+/// A table in a buffer view: names, or indices of objects.
 struct NameList {
   std::uint32_t view = kNone;
   std::uint64_t count = 0;
@@ -102,7 +104,7 @@ struct Timeline {
 };
 /// scenes[i].extras.scenegen
 struct SceneExtras {
-  NameList names;
+  NameList names, ids;
   std::uint32_t first_timeline = 0, timeline_count = 0;
 };
 

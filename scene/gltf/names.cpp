@@ -58,15 +58,35 @@ namespace {
 std::uint64_t leb128(Bytes bytes, std::size_t& at, const Place& place) {
   std::uint64_t out = 0;
   for (unsigned shift = 0; shift <= 28; shift += 7) {
-    if (at >= bytes.size()) reject(place, "the name table is truncated");
+    if (at >= bytes.size()) reject(place, "the table is truncated");
     const std::uint8_t byte = bytes[at++];
     out |= std::uint64_t{byte & 0x7FU} << shift;
     if ((byte & 0x80U) == 0) return out;
   }
-  reject(place, "a length in the name table is beyond 2^35");
+  reject(place, "a number in the table is beyond 2^35");
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> decode_ids(const NameList& list, Data& data, const Place& at) {
+  const Bytes bytes = data.view(list.view, at.key("bufferView"));
+  if (list.count > bytes.size()) {
+    reject(at.key("count"),
+           std::to_string(list.count) + " indices in " + std::to_string(bytes.size()) + " bytes");
+  }
+  data.budget().take(list.count * sizeof(std::uint32_t), at);
+  std::vector<std::uint32_t> out;
+  out.reserve(list.count);
+  std::size_t from = 0;
+  std::int64_t id = 0;
+  for (std::uint64_t i = 0; i < list.count; ++i) {
+    const std::uint64_t code = leb128(bytes, from, at);
+    id += static_cast<std::int64_t>(code >> 1) ^ -static_cast<std::int64_t>(code & 1);
+    if (id < 0 || id >= std::int64_t{kNone}) reject(at, "index " + std::to_string(i) + " is out of range");
+    out.push_back(static_cast<std::uint32_t>(id));
+  }
+  return out;
+}
 
 NameTable decode_names(const NameList& list, Data& data, const Place& at) {
   const Bytes bytes = data.view(list.view, at.key("bufferView"));

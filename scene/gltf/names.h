@@ -54,5 +54,7 @@ class UniqueNames {
 
 /// Names of docs/FORMAT.md 4, in index order.
 [[nodiscard]] NameTable decode_names(const NameList& list, Data& data, const Place& at);
+/// Indices of objects of docs/FORMAT.md 2 (ids), in the order of the table.
+[[nodiscard]] std::vector<std::uint32_t> decode_ids(const NameList& list, Data& data, const Place& at);
 
 }  // namespace scenegen::gltf::reading

@@ -67,6 +67,8 @@ void parse_node_extras(Value value, const Place& at, Node& node, Document& out) 
         detail.visibility = get_index(w, q);
       } else if (key == "looks") {
         detail.looks = get_index(w, q);
+      } else if (key == "ids") {
+        detail.first_id = get_index(w, q);
       } else if (key == "standsFor") {
         detail.stands_for = get_index(w, q);
       } else if (key == "name") {

@@ -213,14 +213,14 @@ void parse_cameras(Value value, const Place& at, Document& out) {
 
 namespace {
 
-void parse_name_list(Value value, const Place& at, NameList& names) {
+void parse_table(Value value, const Place& at, std::string_view encoding, NameList& names) {
   each_field(value, at, [&](std::string_view key, Value& v, const Place& p) {
     if (key == "bufferView") {
       names.view = get_index(v, p);
     } else if (key == "count") {
       names.count = get_count(v, p);
-    } else if (key == "encoding" && get_string(v, p) != "front-coded-utf8") {
-      reject(p, "wanted \"front-coded-utf8\"");
+    } else if (key == "encoding" && get_string(v, p) != encoding) {
+      reject(p, "wanted \"" + std::string(encoding) + "\"");
     }
   });
 }
@@ -259,7 +259,9 @@ void parse_timeline(Value value, const Place& at, Document& out) {
 void parse_scene_extras(Value value, const Place& at, SceneExtras& extras, Document& out) {
   each_field(value, at, [&](std::string_view key, Value& v, const Place& p) {
     if (key == "names") {
-      parse_name_list(v, p, extras.names);
+      parse_table(v, p, "front-coded-utf8", extras.names);
+    } else if (key == "ids") {
+      parse_table(v, p, "delta-leb128", extras.ids);
     } else if (key == "timelines") {
       extras.first_timeline = static_cast<std::uint32_t>(out.timelines.size());
       each_element(v, p, [&](Value& w, const Place& q) { parse_timeline(w, q, out); });

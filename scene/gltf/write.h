@@ -37,6 +37,10 @@ struct WriteOptions {
   VisibilityEncoding visibility = VisibilityEncoding::scale;
   unsigned threads = 1;  ///< a hint; one thread writes 1 M objects in 0.4 s, so it is not used yet
   DracoOptions draco;
+  /// Layout instances without looks: indices of objects in one table instead of an attribute `_OBJECT_ID` a
+  /// node. Some 80 bytes a node and 2 an object less; tools that rewrite buffers lose the table (and the
+  /// names with it).
+  bool id_table = false;
 
   WriteOptions() = default;
   WriteOptions(Layout l, VisibilityEncoding v, unsigned t = 1) : layout(l), visibility(v), threads(t) {}

@@ -70,14 +70,19 @@ void plan_animation(const FileTracks& tracks, const AnimationPlan& animation, Bu
 }
 
 void plan_instances(const Scene& scene, const NodePlan& nodes, BufferPlan& plan) {
-  plan.first_instance = plan.accessor_count;
   if (nodes.layout != Layout::instances) return;
-  for (const Group& group : nodes.groups) {
-    plan.accessor_count += instance_accessors(group);
-    plan[ViewKind::translations].bytes += std::uint64_t{group.count} * 12;
-    if (group.rotated) plan[ViewKind::rotations].bytes += std::uint64_t{group.count} * 16;
-    if (group.scaled) plan[ViewKind::scales].bytes += std::uint64_t{group.count} * 12;
-    plan[ViewKind::object_ids].bytes += std::uint64_t{group.count} * 4;
+  plan.instances = number_instance_accessors(scene, nodes, plan.accessor_count);
+  for (std::size_t g = 0; g < nodes.groups.size(); ++g) {
+    const std::uint64_t count = nodes.groups[g].count;
+    plan[ViewKind::translations].bytes += count * 12;
+    if (plan.instances[g].own_rotation) plan[ViewKind::rotations].bytes += count * 16;
+    if (plan.instances[g].own_scale) plan[ViewKind::scales].bytes += count * 12;
+    if (!nodes.id_table) plan[ViewKind::object_ids].bytes += count * 4;
+  }
+  if (nodes.id_table) {
+    ByteSink ids;
+    write_id_table(nodes, ids);
+    plan[ViewKind::object_ids].bytes = ids.total();
   }
   ByteSink counter;
   write_front_coded(scene.objects.names, counter);
@@ -314,10 +319,14 @@ void write_visibility_bytes(const FileTracks& tracks, const AnimationPlan& anima
 
 /// One attribute of all instances. The pass over the groups is repeated for each, so that nothing is
 /// collected.
-void write_instances(const Scene& scene, const NodePlan& nodes, ViewKind kind, ByteSink& sink) {
+void write_instances(const Scene& scene, const NodePlan& nodes, const BufferPlan& plan, ViewKind kind,
+                     ByteSink& sink) {
   if (nodes.layout != Layout::instances) return;
-  for (const Group& group : nodes.groups) {
-    if ((kind == ViewKind::rotations && !group.rotated) || (kind == ViewKind::scales && !group.scaled))
+  if (kind == ViewKind::object_ids && nodes.id_table) return write_id_table(nodes, sink);
+  for (std::size_t g = 0; g < nodes.groups.size(); ++g) {
+    const Group& group = nodes.groups[g];
+    if ((kind == ViewKind::rotations && !plan.instances[g].own_rotation) ||
+        (kind == ViewKind::scales && !plan.instances[g].own_scale))
       continue;
     for (std::uint32_t k = group.first; k < group.first + group.count; ++k) {
       const std::uint32_t object = nodes.grouped[k];
@@ -364,12 +373,12 @@ void emit_accessors(const Scene& scene, const NodePlan& nodes, const AnimationPl
   }
   emit_animation_accessors(nodes.tracks, animation, accessors);
   if (nodes.layout == Layout::instances) {
-    for (const Group& group : nodes.groups) {
-      const std::uint64_t n = group.count;
+    for (std::size_t g = 0; g < nodes.groups.size(); ++g) {
+      const std::uint64_t n = nodes.groups[g].count;
       accessors.add(ViewKind::translations, kFloat, n, "VEC3", n * 12);
-      if (group.rotated) accessors.add(ViewKind::rotations, kFloat, n, "VEC4", n * 16);
-      if (group.scaled) accessors.add(ViewKind::scales, kFloat, n, "VEC3", n * 12);
-      accessors.add(ViewKind::object_ids, kUnsignedInt, n, "SCALAR", n * 4);
+      if (plan.instances[g].own_rotation) accessors.add(ViewKind::rotations, kFloat, n, "VEC4", n * 16);
+      if (plan.instances[g].own_scale) accessors.add(ViewKind::scales, kFloat, n, "VEC3", n * 12);
+      if (!nodes.id_table) accessors.add(ViewKind::object_ids, kUnsignedInt, n, "SCALAR", n * 4);
     }
   }
   assert(accessors.count() == plan.accessor_count);
@@ -425,7 +434,7 @@ void write_buffer(const Scene& scene, const NodePlan& nodes, const AnimationPlan
     if (kind == ViewKind::values) write_values(nodes.tracks, animation, sink);
     if (kind == ViewKind::bytes) write_visibility_bytes(nodes.tracks, animation, sink);
     if (kind >= ViewKind::translations && kind <= ViewKind::object_ids)
-      write_instances(scene, nodes, kind, sink);
+      write_instances(scene, nodes, plan, kind, sink);
     if (kind == ViewKind::names && plan[kind].bytes != 0) write_front_coded(scene.objects.names, sink);
     pad();
   }

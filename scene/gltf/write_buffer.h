@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scene/gltf/write_draco.h"
+#include "scene/gltf/write_instances.h"
 #include "scene/gltf/write_plan.h"
 #include "scene/gltf/write_sink.h"
 #include "scene/gltf/write_text.h"
@@ -58,17 +59,13 @@ struct BufferPlan {
   const DracoStreams* streams = nullptr;
   std::vector<GeometryAccessors> geometries;
   std::uint32_t first_input = 0, first_byte_output = 0, first_scale_output = 0, first_value_output = 0,
-                first_instance = 0, accessor_count = 0;
+                accessor_count = 0;
+  std::vector<InstanceAccessors> instances;  ///< by group; empty but in layout instances
 
   [[nodiscard]] const View& operator[](ViewKind kind) const { return views[static_cast<std::size_t>(kind)]; }
   [[nodiscard]] View& operator[](ViewKind kind) { return views[static_cast<std::size_t>(kind)]; }
   [[nodiscard]] std::uint32_t accessor_of(const AnimationSampler& sampler) const;
 };
-
-/// Accessors of one instancing node: TRANSLATION, ROTATION if rotated, SCALE if scaled, _OBJECT_ID.
-[[nodiscard]] inline std::uint32_t instance_accessors(const Group& group) {
-  return 2U + (group.rotated ? 1U : 0U) + (group.scaled ? 1U : 0U);
-}
 
 /// Which geometries some mesh uses (1) and which none (0); the others are not written.
 [[nodiscard]] std::vector<std::uint8_t> used_geometries(const Scene& scene);

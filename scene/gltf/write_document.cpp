@@ -72,7 +72,9 @@ WriteReport Document::report() const {
 
 /// Primitives of the meshes of all nodes.
 std::uint64_t Document::draws() const {
-  const auto of_mesh = [&](MeshId mesh) { return std::uint64_t{scene_.meshes[mesh.value].primitives.size()}; };
+  const auto of_mesh = [&](MeshId mesh) {
+    return std::uint64_t{scene_.meshes[mesh.value].primitives.size()};
+  };
   std::uint64_t count = 0;
   for (const GroupNode& node : nodes_.group_nodes) {
     const Group& group = nodes_.groups[node.group];
@@ -198,6 +200,13 @@ void Document::emit_scene_extras(TextOut& out) const {
     out.raw(R"(,"count":)");
     out.number(scene_.objects.size());
     out.raw(R"(,"encoding":"front-coded-utf8"})");
+  }
+  if (nodes_.id_table && buffer_[ViewKind::object_ids].bytes > 0) {
+    members.next().raw(R"("ids":{"bufferView":)");
+    out.number(buffer_[ViewKind::object_ids].index);
+    out.raw(R"(,"count":)");
+    out.number(nodes_.grouped.size());
+    out.raw(R"(,"encoding":"delta-leb128"})");
   }
   if (!nodes_.timelines.empty()) emit_timelines(members, out);
   out.raw("}}");

@@ -1,6 +1,7 @@
 // Which objects share nodes: those that move, come, go and change their look together.
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 
 #include "scene/gltf/write_plan.h"
 
@@ -56,6 +57,20 @@ void make_groups(const Scene& scene, const std::vector<TrackId>& looks, NodePlan
     const Transform& transform = objects.frame_from_object[i];
     group.rotated = group.rotated || transform.rotation != glm::quat(1.0F, 0.0F, 0.0F, 0.0F);
     group.scaled = group.scaled || transform.scale != glm::vec3(1.0F);
+  }
+}
+
+/// By rotation and scale, then index: so groups of bricks that are laid alike have equal lists of rotations
+/// and scales, which are then written once (scene/gltf/write_instances.h).
+void order_instances(const Scene& scene, NodePlan& plan) {
+  const auto key = [&](std::uint32_t i) {
+    const Transform& t = scene.objects.frame_from_object[i];
+    return std::tuple(t.rotation.x, t.rotation.y, t.rotation.z, t.rotation.w, t.scale.x, t.scale.y, t.scale.z,
+                      i);
+  };
+  for (const Group& group : plan.groups) {
+    const auto first = plan.grouped.begin() + group.first;
+    std::sort(first, first + group.count, [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
   }
 }
 
@@ -174,8 +189,11 @@ void plan_groups(const Scene& scene, const WriteOptions& options, NodePlan& plan
           "mesh)");
   }
   dissolve_single_groups(plan);
+  if (plan.layout == Layout::instances) order_instances(scene, plan);
   find_singles(scene.objects.size(), plan);
   make_group_nodes(scene, plan);
+  // Looks of one object must find each other even when a tool has lost the table.
+  plan.id_table = options.id_table && plan.layout == Layout::instances && plan.timelines.empty();
 }
 
 }  // namespace scenegen::gltf

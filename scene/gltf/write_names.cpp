@@ -49,14 +49,12 @@ void UniqueNames::settle(const NameTable& objects) {
   }
 }
 
-namespace {
-void write_leb128(std::size_t value, ByteSink& sink) {
+void write_leb128(std::uint64_t value, ByteSink& sink) {
   char* to = sink.reserve(10);
   for (; value >= 0x80; value >>= 7) *to++ = static_cast<char>(value | 0x80);
   *to++ = static_cast<char>(value);
   sink.commit(to);
 }
-}  // namespace
 
 void write_front_coded(const NameTable& names, ByteSink& sink) {
   std::string_view before;

@@ -28,5 +28,7 @@ class UniqueNames {
 /// Front coding: LEB128 length of the prefix shared with the name before, LEB128 length of the rest, the
 /// rest.
 void write_front_coded(const NameTable& names, ByteSink& sink);
+/// Seven bits a byte, the lowest first; the highest bit says that more follow.
+void write_leb128(std::uint64_t value, ByteSink& sink);
 
 }  // namespace scenegen::gltf

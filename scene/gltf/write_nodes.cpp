@@ -121,7 +121,6 @@ void Document::emit_look_extras(const Group& group, std::uint32_t number, std::u
 }
 
 void Document::emit_group_nodes(Commas& commas, TextOut& out) const {
-  std::uint32_t accessor = buffer_.first_instance, first_accessor = accessor;
   for (std::size_t n = 0; n < nodes_.group_nodes.size() && !out.sink().failed(); ++n) {
     const GroupNode& node = nodes_.group_nodes[n];
     const Group& group = nodes_.groups[node.group];
@@ -142,20 +141,26 @@ void Document::emit_group_nodes(Commas& commas, TextOut& out) const {
       out.raw("}");
       continue;
     }
-    if (node.number == 0) first_accessor = accessor;  // looks share the instances
-    accessor = first_accessor;
-    const auto attribute = [&](std::string_view key) {
+    const InstanceAccessors& accessors = buffer_.instances[node.group];  // looks share them
+    const auto attribute = [&](std::string_view key, std::uint32_t accessor) {
       out.raw(key);
-      out.number(accessor++);
+      out.number(accessor);
     };
     out.raw(R"(,"mesh":)");
     out.number((node.look.valid() ? node.look : group.mesh).value);
-    attribute(R"(,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":)");
-    if (group.rotated) attribute(R"(,"ROTATION":)");
-    if (group.scaled) attribute(R"(,"SCALE":)");
-    attribute(R"(,"_OBJECT_ID":)");
+    attribute(R"(,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":)",
+              accessors.translation);
+    if (group.rotated) attribute(R"(,"ROTATION":)", accessors.rotation);
+    if (group.scaled) attribute(R"(,"SCALE":)", accessors.scale);
+    if (!nodes_.id_table) attribute(R"(,"_OBJECT_ID":)", accessors.object_id);
     out.raw(carries_pointer ? R"(}},"KHR_node_visibility":{}})" : "}}}");
-    if (node.look.valid()) emit_look_extras(group, node.number, kNoObject, out);
+    if (node.look.valid()) {
+      emit_look_extras(group, node.number, kNoObject, out);
+    } else if (nodes_.id_table) {
+      out.raw(R"(,"extras":{"scenegen":{"ids":)");
+      out.number(group.first);
+      out.raw("}}");
+    }
     out.raw("}");
   }
 }

@@ -61,11 +61,12 @@ struct NodePlan {
 
   Layout layout = Layout::nodes;
   VisibilityEncoding visibility = VisibilityEncoding::scale;
+  bool id_table = false;  ///< as in WriteOptions
 
   FileTracks tracks;
   std::vector<Group> groups;
   std::vector<GroupNode> group_nodes;  ///< by group, then look
-  std::vector<std::uint32_t> grouped;  ///< objects, group by group, by index within a group
+  std::vector<std::uint32_t> grouped;  ///< objects, group by group; by index, or in instances by placement
   /// The tracks behind combined ones, for scenes[0].extras.scenegen.timelines: from the animation alone
   /// nobody could tell what a hidden object looks like.
   std::vector<TrackId> timelines;

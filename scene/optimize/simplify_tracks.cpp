@@ -49,7 +49,8 @@ void keep_keys(Curve& curve, const std::vector<std::uint8_t>& keep) {
 /// A spline that stays at one value becomes a single step.
 void simplify_spline(Curve& curve) {
   const std::size_t w = width(curve.property);
-  for (std::size_t k = 0; k < curve.key_count() && !curve.constant(); ++k) {  // one key: tangents lead nowhere
+  for (std::size_t k = 0; k < curve.key_count() && !curve.constant();
+       ++k) {  // one key: tangents lead nowhere
     const float* const key = &curve.values[k * 3 * w];
     const auto zero = [](float v) { return v == 0.0F; };
     if (!std::all_of(key, key + w, zero) || !std::all_of(key + 2 * w, key + 3 * w, zero)) return;
@@ -100,7 +101,8 @@ void put_at_rest(const Curve& curve, Frame& frame) {
 /// Tracks may overshoot what a material at rest may be (rule 11 of docs/FORMAT.md).
 bool fits_at_rest(const Curve& curve) {
   const float most = curve.property == Property::base_color ? 1.0F : std::numeric_limits<float>::max();
-  return std::all_of(curve.values.begin(), curve.values.end(), [&](float v) { return v >= 0.0F && v <= most; });
+  return std::all_of(curve.values.begin(), curve.values.end(),
+                     [&](float v) { return v >= 0.0F && v <= most; });
 }
 
 void put_at_rest(const Curve& curve, Material& material) {

@@ -350,7 +350,8 @@ TEST_CASE("a static scene is core glTF without animation") {
 TEST_CASE("times, values and samplers are shared as far as they are equal") {
   // 2400 objects of 2 sizes and 3 meshes at 64 moments; both sizes and all meshes occur at every moment.
   const Scene town = testing::town_scene(2400, 64);
-  const std::uint64_t moments = 64, geometry = 2;
+  const std::uint64_t moments = 64, geometry = 2,
+                      lists = 22;  // lists: of rotations and of scales, all different
   struct Expected {
     Layout layout;
     VisibilityEncoding encoding;
@@ -364,7 +365,7 @@ TEST_CASE("times, values and samplers are shared as far as they are equal") {
       {Layout::groups, VisibilityEncoding::both, 2 * moments, 2 * moments, geometry + moments + 2,
        2400 + moments},
       {Layout::instances, VisibilityEncoding::scale, 3 * moments, moments,
-       geometry + moments + 1 + 4 * 3 * moments, 3 * moments},
+       geometry + moments + 1 + 2 * 3 * moments + lists, 3 * moments},
   };
   for (const Expected& expected : table) {
     const auto report = gltf::predict(town, "a.glb", {expected.layout, expected.encoding, 1});

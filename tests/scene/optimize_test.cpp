@@ -89,7 +89,8 @@ TEST_CASE("random scenes look the same at every event and between, and optimizin
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     INFO("seed " << seed);
     Scene scene = timeline::test::RandomScene(seed).make(60, seed % 3 == 0 ? 0 : 9);
-    for (Frame& frame : scene.frames) frame.local.scale = glm::vec3(frame.local.scale.x);  // turned, but no shear
+    for (Frame& frame : scene.frames)
+      frame.local.scale = glm::vec3(frame.local.scale.x);  // turned, but no shear
     const OptimizeReport report = optimized(scene);
     left += report.unframed_objects;
     constant += report.constant_tracks;
