@@ -34,6 +34,7 @@ struct Option {
   bool given = false;
 
   [[nodiscard]] bool is_flag() const { return value.form.empty(); }
+  [[nodiscard]] bool repeats() const { return value.spell_all != nullptr; }
 };
 
 struct Group {
@@ -111,7 +112,8 @@ void Options::add(const std::string& names, Value value, std::string help, Role 
   option.role = role;
   option.default_text = default_text.empty() ? option.value.spell() : std::move(default_text);
   option.handle = option.is_flag() ? state_->app.add_flag(names) : state_->app.add_option(names);
-  option.handle->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  option.handle->multi_option_policy(option.repeats() ? CLI::MultiOptionPolicy::TakeAll
+                                                      : CLI::MultiOptionPolicy::TakeLast);
   state_->groups.back().options.push_back(std::move(option));
 }
 
@@ -201,9 +203,12 @@ Result<void> Options::State::take_positionals() {
 Result<void> Options::State::check_values() const {
   for (const Group& group : groups) {
     for (const Option& option : group.options) {
-      if (option.handle->count() == 0 || !option.handle->results().back().starts_with("--")) continue;
-      return fail(ErrorKind::usage, option.long_name,
-                  "needs a value ('" + option.handle->results().back() + "' is an option)");
+      if (option.handle->count() == 0) continue;
+      const std::vector<std::string>& texts = option.handle->results();
+      const auto wrong = std::find_if(option.repeats() ? texts.begin() : texts.end() - 1, texts.end(),
+                                      [](const std::string& text) { return text.starts_with("--"); });
+      if (wrong != texts.end())
+        return fail(ErrorKind::usage, option.long_name, "needs a value ('" + *wrong + "' is an option)");
     }
   }
   return {};
@@ -213,8 +218,12 @@ Result<void> Options::State::take_options() {
   for (Group& group : groups) {
     for (Option& option : group.options) {
       if (option.handle->count() == 0) continue;
-      const std::string& text = option.handle->results().back();
-      if (auto taken = take_text(option, text, option.long_name); !taken) return taken;
+      if (option.repeats()) option.value.clear();  // what the config file said
+      const std::vector<std::string>& texts = option.handle->results();
+      const std::size_t first = option.repeats() ? 0 : texts.size() - 1;
+      for (std::size_t i = first; i < texts.size(); ++i) {
+        if (auto taken = take_text(option, texts[i], option.long_name); !taken) return taken;
+      }
     }
   }
   return {};
@@ -277,9 +286,13 @@ Result<void> Options::State::take_config(const nlohmann::ordered_json& document)
       return fail(ErrorKind::usage, where,
                   "unknown option" + (nearest.empty() ? "" : " (did you mean '" + nearest + "'?)"));
     }
-    const std::optional<std::string> text = option_text(value, *option);
-    if (!text) return fail(ErrorKind::usage, where, "is neither text, nor a number, nor true or false");
-    if (auto taken = take_text(*option, *text, where); !taken) return taken;
+    const bool list = option->repeats() && value.is_array();
+    const auto texts = list ? value : nlohmann::ordered_json::array({value});
+    for (const auto& entry : texts) {
+      const std::optional<std::string> text = option_text(entry, *option);
+      if (!text) return fail(ErrorKind::usage, where, "is neither text, nor a number, nor true or false");
+      if (auto taken = take_text(*option, *text, where); !taken) return taken;
+    }
   }
   return {};
 }
@@ -320,6 +333,13 @@ std::vector<std::string> Options::canonical_arguments() const {
   for (const Group& group : state_->groups) {
     for (const Option& option : group.options) {
       if (option.role != Role::content || !option.given) continue;
+      if (option.repeats()) {
+        for (const std::string& text : option.value.spell_all()) {
+          out.push_back(option.long_name);
+          out.push_back(text);
+        }
+        continue;
+      }
       out.push_back(option.long_name);
       if (!option.is_flag()) out.push_back(option.value.spell());
     }
@@ -334,6 +354,8 @@ nlohmann::ordered_json Options::config(std::span<const Conflict> left_out) const
       const bool wanted = option.role == Role::content || (option.role == Role::run && option.given);
       const bool refused = std::any_of(left_out.begin(), left_out.end(),
                                        [&](const Conflict& c) { return c.option == option.long_name; });
+      if (wanted && !refused && option.repeats() && !option.value.spell_all().empty())
+        out[option.long_name.substr(2)] = option.value.spell_all();
       const std::string text = option.value.spell();
       if (!wanted || refused || text.empty()) continue;
       auto& member = out[option.long_name.substr(2)];

@@ -34,6 +34,10 @@ struct Value {
   std::string range;  ///< "0 to 1", "hilbert, morton, row-prime"; empty: anything
   std::function<Result<void>(std::string_view)> parse;  ///< the error's `where` is filled in by Options
   std::function<std::string()> spell;                   ///< canonical; "" when there is no value
+  /// For an option that may be given several times: what it holds, and how to make it hold nothing. parse()
+  /// adds to it; a config file has an array.
+  std::function<std::vector<std::string>()> spell_all = {};
+  std::function<void()> clear = {};
 };
 
 /// `target` must outlive the Options. Bounds are inclusive.
@@ -55,6 +59,9 @@ template <class Whole>
 [[nodiscard]] Value metres3_value(glm::dvec3& target, double least, double most, std::string form);
 [[nodiscard]] Value on_off_value(bool& target);
 [[nodiscard]] Value text_value(std::string& target, std::string form, std::string range = {});
+/// An option that may be given several times; `check` looks at each text.
+[[nodiscard]] Value texts_value(std::vector<std::string>& target, std::string form, std::string range,
+                                std::function<Result<void>(const std::string&)> check);
 /// One word of a list; the error names the nearest one.
 template <class Enum>
 [[nodiscard]] Value choice_value(Enum& target, std::vector<std::pair<std::string, Enum>> choices,

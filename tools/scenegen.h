@@ -8,6 +8,7 @@
 namespace scenegen::tools {
 
 int generate_verb(std::span<const std::string> arguments);
+int animate_verb(std::span<const std::string> arguments);
 int inspect_verb(std::span<const std::string> arguments);
 int diff_verb(std::span<const std::string> arguments);
 int optimize_verb(std::span<const std::string> arguments);

@@ -201,6 +201,8 @@ std::string generate_short_help() {
          "\n"
          "  scenegen --grid 4x4 --curve hilbert --coherence 0.95 -o town.glb   generate a town of 16 "
          "buildings\n"
+         "  scenegen animate model.fbx -o model.glb                            give a static model a "
+         "timeline\n"
          "  scenegen inspect town.glb                                          what is in a file\n"
          "  scenegen diff a.glb b.glb                                          are two files the same "
          "scene?\n"

@@ -123,24 +123,10 @@ Value curve_value(std::optional<CurveKind>& target) {
 }
 
 void add_appearance_options(Options& options, GenerateRequest& r) {
-  timeline::AppearanceOptions& a = r.appearance;
-  constexpr double kLongest = 1e6;  // s
   options.group("Appearance");
   options.add("--curve", curve_value(r.curve), "curve along which objects appear; none makes a static scene",
               Role::content);
-  options.add("--order", order_value(a.order),
-              "axes from the fastest to the slowest, with directions (z is up): +x+y-z mirrors the curve in "
-              "z; with row-prime it goes layer by layer, top-down",
-              Role::content);
-  options.add("--cells", size3_value(a.cells, glm::uvec3(1), glm::uvec3(limits::kMaxCellsPerAxis), "XxYxZ"),
-              "grid of cells that the curve runs through", Role::content);
-  options.add("--interval", real_value(a.interval_s, 1e-6, kLongest, "S"),
-              "seconds between neighbouring cells: cell n appears at n times this", Role::content);
-  options.add("--hold", real_value(a.hold_s, 0, kLongest, "S"), "seconds after the last event",
-              Role::content);
-  options.add("--coherence", real_value(a.coherence, 0, 1, "C"),
-              "share of objects that appear with their own cell; the others are displaced in time",
-              Role::content);
+  add_curve_options(options, r.appearance);
 }
 
 void add_output_options(Options& options, GenerateRequest& r) {
@@ -172,14 +158,35 @@ Value bits_value(std::uint32_t& target) {
 
 }  // namespace
 
+void add_curve_options(Options& options, timeline::AppearanceOptions& a) {
+  constexpr double kLongest = 1e6;  // s
+  options.add("--order", order_value(a.order),
+              "axes from the fastest to the slowest, with directions (z is up): +x+y-z mirrors the curve in "
+              "z; with row-prime it goes layer by layer, top-down",
+              Role::content);
+  options.add("--cells", size3_value(a.cells, glm::uvec3(1), glm::uvec3(limits::kMaxCellsPerAxis), "XxYxZ"),
+              "grid of cells that the curve runs through", Role::content);
+  options.add("--interval", real_value(a.interval_s, 1e-6, kLongest, "S"),
+              "seconds between neighbouring cells: cell n appears at n times this", Role::content);
+  options.add("--hold", real_value(a.hold_s, 0, kLongest, "S"), "seconds after the last event",
+              Role::content);
+  options.add("--coherence", real_value(a.coherence, 0, 1, "C"),
+              "share of objects that appear with their own cell; the others are displaced in time",
+              Role::content);
+}
+
+void add_visibility_option(Options& options, gltf::VisibilityEncoding& visibility) {
+  options.add("--visibility", choice_value<gltf::VisibilityEncoding>(visibility, encodings(), "HOW"),
+              "how hiding is written: animated scale plays everywhere, pointer is KHR_node_visibility",
+              Role::content);
+}
+
 void add_file_options(Options& options, gltf::WriteOptions& file) {
   options.add("--layout", choice_value<gltf::Layout>(file.layout, layouts(), "LAYOUT"),
               "how objects become glTF nodes (docs/FORMAT.md); auto: instances from " +
                   std::to_string(gltf::kInstancesFrom) + " objects on, else nodes",
               Role::content);
-  options.add("--visibility", choice_value<gltf::VisibilityEncoding>(file.visibility, encodings(), "HOW"),
-              "how hiding is written: animated scale plays everywhere, pointer is KHR_node_visibility",
-              Role::content);
+  add_visibility_option(options, file.visibility);
 }
 
 Result<void> check_scene_output(const std::string& output) {
@@ -227,7 +234,8 @@ std::vector<Conflict> conflicts_of_draco(const gltf::DracoOptions& draco) {
 
 Options generate_options(GenerateRequest& r) {
   Options options("scenegen",
-                  {"scenegen [options]              generate a scene", "scenegen inspect FILE [options]",
+                  {"scenegen [options]              generate a scene",
+                   "scenegen animate MODEL -o OUT [options]", "scenegen inspect FILE [options]",
                    "scenegen diff A B [options]", "scenegen optimize FILE -o OUT [options]"},
                   "makes a town of brick buildings that goes up along a space-filling curve, as glTF.");
   add_town_options(options, r);

@@ -43,6 +43,9 @@ struct GenerateRequest {
 /// Copies the seed and the threads to where the rooms look for them.
 void settle(GenerateRequest& request);
 
+/// --order, --cells, --interval, --hold and --coherence, in the present group.
+void add_curve_options(Options& options, timeline::AppearanceOptions& appearance);
+void add_visibility_option(Options& options, gltf::VisibilityEncoding& visibility);
 /// --layout and --visibility.
 void add_file_options(Options& options, gltf::WriteOptions& file);
 

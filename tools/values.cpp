@@ -123,6 +123,20 @@ Value on_off_value(bool& target) {
   return value;
 }
 
+Value texts_value(std::vector<std::string>& target, std::string form, std::string range,
+                  std::function<Result<void>(const std::string&)> check) {
+  Value value{Value::Kind::text, std::move(form), std::move(range),
+              [&target, check = std::move(check)](std::string_view text) -> Result<void> {
+                if (auto good = check(std::string(text)); !good) return good;
+                target.emplace_back(text);
+                return {};
+              },
+              [] { return std::string(); }};
+  value.spell_all = [&target] { return target; };
+  value.clear = [&target] { target.clear(); };
+  return value;
+}
+
 Value text_value(std::string& target, std::string form, std::string range) {
   return {Value::Kind::text, std::move(form), std::move(range),
           [&target](std::string_view text) -> Result<void> {

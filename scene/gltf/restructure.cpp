@@ -73,7 +73,7 @@ class Restructurer {
     bool known = false;
     std::vector<std::size_t> parts;
   };
-  void forget_object_numbers();
+  void renumber_objects();
   void expand_instances();
   void split_object(std::size_t object);
   const MeshSplit& split_mesh(std::uint32_t mesh);
@@ -90,7 +90,7 @@ class Restructurer {
   Split split_;
   Json document_;
   PartData data_;
-  std::vector<std::uint32_t> node_of_object_;
+  std::vector<std::vector<std::size_t>> nodes_of_object_;  ///< one, or its parts
   std::vector<MeshSplit> meshes_;
   Restructured out_;
   std::vector<std::pair<std::string, std::uint64_t>> whole_;  ///< reasons and their counts
@@ -112,32 +112,37 @@ std::size_t Restructurer::add_node(std::size_t parent, Json node) {
   return nodes.size() - 1;
 }
 
-/// Our own index of objects and table of names hold for the objects there were: names go into the nodes.
-void Restructurer::forget_object_numbers() {
-  const auto clear = [](Json& owner, std::initializer_list<const char*> keys) {
-    if (!owner.is_object() || !owner.contains("extras") || !owner["extras"].is_object()) return;
-    Json& extras = owner["extras"];
-    if (!extras.contains("scenegen") || !extras["scenegen"].is_object()) return;
-    for (const char* key : keys) extras["scenegen"].erase(key);
-    if (extras["scenegen"].empty()) extras.erase("scenegen");
-    if (extras.empty()) owner.erase("extras");
+/// In our own files objects have numbers, and names a table: both hold for the objects there were. The
+/// numbers are given again in the old order, parts following each other; names are in the nodes.
+void Restructurer::renumber_objects() {
+  const auto ours_in = [](Json& owner) -> Json* {
+    const auto extras = owner.find("extras");
+    if (extras == owner.end() || !extras->is_object()) return nullptr;
+    const auto ours = extras->find("scenegen");
+    return ours == extras->end() || !ours->is_object() ? nullptr : &*ours;
   };
+  if (!document_.contains("asset") || ours_in(document_["asset"]) == nullptr) return;
   if (document_.contains("scenes")) {
-    for (Json& scene : document_["scenes"]) clear(scene, {"names"});
+    for (Json& scene : document_["scenes"]) {
+      if (Json* const ours = ours_in(scene); ours != nullptr) ours->erase("names");
+    }
   }
-  for (Json& node : document_["nodes"]) clear(node, {"object"});
+  std::uint64_t number = 0;
+  for (const auto& nodes : nodes_of_object_) {
+    for (const std::size_t node : nodes) document_["nodes"][node]["extras"]["scenegen"]["object"] = number++;
+  }
 }
 
 void Restructurer::expand_instances() {
-  node_of_object_ = source_.node_of_object;
+  for (const std::uint32_t node : source_.node_of_object) nodes_of_object_.push_back({node});
   if (source_.instance_of_object.empty()) return;
   std::vector<std::uint32_t> left;  // by node: the mesh of an expanded one
-  for (std::size_t i = 0; i < node_of_object_.size(); ++i) {
+  for (std::size_t i = 0; i < nodes_of_object_.size(); ++i) {
     const std::uint32_t node = source_.node_of_object[i];
     if (!has_extension(document_["nodes"][node], kInstancing)) continue;
     Json child = {{"name", scene_.objects.names[i]}, {"mesh", scene_.objects.mesh[i].value}};
     put_transform(scene_.objects.frame_from_object[i], child);
-    node_of_object_[i] = static_cast<std::uint32_t>(add_node(node, std::move(child)));
+    nodes_of_object_[i] = {add_node(node, std::move(child))};
     left.push_back(node);
     ++out_.expanded;
   }
@@ -261,7 +266,7 @@ const Restructurer::MeshSplit& Restructurer::split_mesh(std::uint32_t index) {
 }
 
 void Restructurer::split_object(std::size_t object) {
-  const std::uint32_t node = node_of_object_[object];
+  const std::size_t node = nodes_of_object_[object].front();
   const Json& before = document_["nodes"][node];
   if (!before.contains("mesh")) return note("show several looks over time");
   if (before.contains("skin")) return note("are skinned");
@@ -270,8 +275,11 @@ void Restructurer::split_object(std::size_t object) {
   if (split.parts.size() < 2) return;
   document_["nodes"][node].erase("mesh");
   const std::string name(scene_.objects.names[object]);
-  for (std::size_t k = 0; k < split.parts.size(); ++k)
-    (void)add_node(node, {{"name", name + "/part_" + std::to_string(k)}, {"mesh", split.parts[k]}});
+  nodes_of_object_[object].clear();
+  for (std::size_t k = 0; k < split.parts.size(); ++k) {
+    nodes_of_object_[object].push_back(
+        add_node(node, {{"name", name + "/part_" + std::to_string(k)}, {"mesh", split.parts[k]}}));
+  }
   ++out_.split_objects;
 }
 
@@ -317,12 +325,12 @@ std::vector<std::uint8_t> Restructurer::finish() {
 }
 
 Restructured Restructurer::run() {
-  forget_object_numbers();
   expand_instances();
   if (split_ != Split::none) {
     meshes_.resize(scene_.meshes.size());
-    for (std::size_t i = 0; i < node_of_object_.size(); ++i) split_object(i);
+    for (std::size_t i = 0; i < nodes_of_object_.size(); ++i) split_object(i);
   }
+  renumber_objects();
   const std::vector<std::uint8_t> glb = finish();
   const std::size_t slash = source_.path.rfind('/');
   const std::string folder = slash == std::string::npos ? "."

@@ -199,6 +199,7 @@ TEST_CASE("instances become nodes with the names they had") {
   const timeline::Comparison same = timeline::compare(before->scene, after.read.scene);
   CHECK(same.equal());
   for (const auto& d : same.differences) UNSCOPED_INFO(d.where << ": " << d.what);
+  CHECK(names(before->scene) == names(after.read.scene));  // in the same order
   CHECK_FALSE(gltf::needs_restructuring(after.read, Split::none));
 }
 
