@@ -166,7 +166,7 @@ void Renderer::State::make_targets() {
 }
 
 PassContext Renderer::State::context(vkr::Frame& frame, vkr::Barriers& barriers) {
-  return {*device, *pipelines, *gpu, *scene, frame, barriers, ring->completed()};
+  return {*device, *memory, *pipelines, *gpu, *scene, frame, barriers, ring->completed()};
 }
 
 vkr::Buffer& Renderer::State::readback(vkr::Buffer& buffer) {
@@ -258,6 +258,10 @@ void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline:
   report.secondaries = counters.secondaries;
   report.recorded = counters.recorded;
   report.recorded_draws = counters.recorded_draws;
+  report.queries = counters.queries;
+  report.believed_hidden = counters.believed_hidden;
+  report.found_hidden = counters.found_hidden;
+  report.reveals = counters.reveals;
   unfinished.push_back({&frame, report});
 }
 

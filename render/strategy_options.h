@@ -7,9 +7,14 @@ namespace scenegen::render {
 
 struct StrategyOptions {
   bool reversed = false;  ///< draw solid slots in reverse order: finds pixels where equal depths meet
-  std::uint32_t objects_per_node = 0;  ///< of the octree; 0: chosen so that it fits, from 100 on
+  std::uint32_t objects_per_node = 0;  ///< of the octree; 0: chosen so that it fits, from 200 on
   /// What the octree and its command buffers may take (3.3); when it does not fit, `inline` is used.
   std::uint64_t octree_bytes = 1ULL << 30;
+  /// Believe old results of occlusion queries instead of checking them in the same frame (as the dissertation
+  /// does): saves work, and objects that come into view appear some frames too late.
+  bool late_visibility = false;
+  /// For tests: as if the device had no conditional rendering.
+  bool no_conditional_rendering = false;
   /// For tests: allocating more cached command buffers than this fails as if memory were out; 0: never.
   std::uint64_t fail_after_buffers = 0;
 };

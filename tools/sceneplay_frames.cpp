@@ -39,6 +39,7 @@ struct FramesRequest {
   std::string strategy = "inline";
   std::uint32_t octree_n = 0;
   std::uint64_t octree_mib = 1024;
+  bool late_visibility = false;
   bool full_barriers = false;
   std::string device;
   bool list_devices = false;
@@ -174,6 +175,10 @@ ordered_json frame_json(const render::FrameReport& r, double seek_ms, double enc
           {"secondaries", r.secondaries},
           {"recorded", r.recorded},
           {"recordedDraws", r.recorded_draws},
+          {"queries", r.queries},
+          {"believedHidden", r.believed_hidden},
+          {"foundHidden", r.found_hidden},
+          {"reveals", r.reveals},
           {"drawn", r.drawn},
           {"draws", r.draws},
           {"triangles", r.triangles},
@@ -302,6 +307,7 @@ render::RendererOptions renderer_options(const FramesRequest& request) {
   o.strategy = request.strategy;
   o.how.objects_per_node = request.octree_n;
   o.how.octree_bytes = request.octree_mib << 20;
+  o.how.late_visibility = request.late_visibility;
   o.shadows = request.shadows;
   o.full_barriers = request.full_barriers;
   return o;
@@ -387,10 +393,12 @@ void add_options(Options& options, FramesRequest& r) {
               "way of drawing; all give the same pictures (docs/STRATEGIES.md)");
   options.add(
       "--octree-n", whole_value(r.octree_n, 0U, 100000U),
-      "objects a node of the octree holds, and draws a kept command buffer; 0: the smallest from 100 on "
+      "objects a node of the octree holds, and draws a kept command buffer; 0: the smallest from 200 on "
       "that fits");
   options.add("--octree-memory", whole_value(r.octree_mib, std::uint64_t{1}, std::uint64_t{1} << 20, "MIB"),
               "what --strategy octree may take; without room for it, inline is used");
+  options.flag("--late-visibility", r.late_visibility,
+               "queries: believe results of earlier frames; what comes into view may appear frames too late");
   options.add("--barriers", choice_value<bool>(r.full_barriers, {{"exact", false}, {"full", true}}),
               "full: a full barrier at every step, to look for missing ones");
   options.group("Device");

@@ -46,8 +46,14 @@ void CommandCache::record(const PassRecording& pass, Kept& kept, std::span<const
   // Several frames may have it in flight at once.
   begin_secondary(kept.owner, context.pipelines, pass.target(),
                   vk::CommandBufferUsageFlagBits::eSimultaneousUse);
+  // Neither is inherited: begun and ended in here, at a fixed place.
+  if (kept.predicates) {
+    kept.owner.beginConditionalRenderingEXT(
+        vk::ConditionalRenderingBeginInfoEXT(kept.predicates, std::uint64_t{4} * kept.chunk));
+  }
   DrawRecorder recorder(kept.owner, context.pipelines, context.gpu, context.scene, pass.target().pass);
   for (const std::uint32_t slot : slots) recorder.draw(slot);
+  if (kept.predicates) kept.owner.endConditionalRenderingEXT();
   kept.owner.end();
   kept.entry = {*kept.owner, recorder.draws(), recorder.triangles()};
   ++counters_.recorded;
@@ -55,13 +61,16 @@ void CommandCache::record(const PassRecording& pass, Kept& kept, std::span<const
 }
 
 const CommandCache::Entry& CommandCache::get(const PassRecording& pass, std::uint32_t chunk,
-                                             std::uint64_t revision, std::span<const std::uint32_t> slots) {
+                                             std::uint64_t revision, std::span<const std::uint32_t> slots,
+                                             vk::Buffer predicates) {
   assert(pass.target().pass != vkr::PassKind::shadow);
   std::vector<Kept>& of_pass = kept_[pass.target().pass == vkr::PassKind::color ? 0 : 1];
   if (of_pass.size() <= chunk) of_pass.resize(std::max<std::size_t>(chunk + 1, of_pass.size() * 2));
   Kept& kept = of_pass[chunk];
-  if (!*kept.owner || kept.revision != revision) {
+  if (!*kept.owner || kept.revision != revision || kept.predicates != predicates) {
     retire(kept);
+    kept.predicates = predicates;
+    kept.chunk = chunk;
     kept.owner = take(pass.context().completed);
     record(pass, kept, slots);
     kept.revision = revision;

@@ -28,8 +28,9 @@ class CommandCache {
 
   /// Commands that draw `slots` in the pass: the kept ones if they were recorded for this revision, else they
   /// are recorded now. Throws vk::SystemError when there is no memory.
+  /// With `predicates`, the commands run only where the 32-bit value of the chunk there is not 0.
   const Entry& get(const PassRecording& pass, std::uint32_t chunk, std::uint64_t revision,
-                   std::span<const std::uint32_t> slots);
+                   std::span<const std::uint32_t> slots, vk::Buffer predicates = {});
   /// Nothing that was recorded is good any more (the picture has another size).
   void forget();
 
@@ -47,6 +48,8 @@ class CommandCache {
     Entry entry;
     std::uint64_t revision = 0;
     std::uint64_t last_used = 0;  // serial of a frame
+    vk::Buffer predicates;
+    std::uint32_t chunk = 0;
   };
   struct Retired {
     vk::raii::CommandBuffer owner;

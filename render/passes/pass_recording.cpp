@@ -18,7 +18,15 @@ void PassRecording::begin(Form form) {
   form_ = form;
   begin_pass(
       context_.frame.commands, context_.pipelines, target_, context_.barriers,
-      form == Form::draws ? vk::SubpassContents::eInline : vk::SubpassContents::eSecondaryCommandBuffers);
+      form == Form::draws ? vk::SubpassContents::eInline : vk::SubpassContents::eSecondaryCommandBuffers,
+      part_);
+}
+
+void PassRecording::end_first_part() {
+  assert(part_ == vkr::PassPart::first && form_ == Form::secondaries);
+  context_.frame.commands.endRenderPass();
+  part_ = vkr::PassPart::second;
+  form_ = Form::not_begun;
 }
 
 DrawRecorder& PassRecording::draws() {

@@ -17,6 +17,7 @@ namespace scenegen::render {
 /// What recording needs, the same for all passes of a frame.
 struct PassContext {
   const vkr::Device& device;
+  vkr::Memory& memory;
   vkr::Pipelines& pipelines;
   const GpuScene& gpu;
   const DrawScene& scene;
@@ -37,6 +38,11 @@ class PassRecording {
   [[nodiscard]] DrawRecorder& draws();
   /// Cached secondaries instead, in order. `draws` and `triangles` are what they hold, for the report.
   void execute(std::span<const vk::CommandBuffer> secondaries, std::uint64_t draws, std::uint64_t triangles);
+  /// The pass will have two parts: to be said before anything is executed.
+  void in_two_parts() { part_ = vkr::PassPart::first; }
+  /// Ends the first part; what is not allowed inside a pass can be recorded now, into
+  /// context().frame.commands.
+  void end_first_part();
   /// Where to record what comes after the solid objects. State of earlier draws is not to be relied on.
   [[nodiscard]] const vk::raii::CommandBuffer& rest();
   /// Ends the pass.
@@ -56,6 +62,7 @@ class PassRecording {
   PassContext context_;
   Target& target_;
   Form form_ = Form::not_begun;
+  vkr::PassPart part_ = vkr::PassPart::whole;
   std::optional<DrawRecorder> recorder_;
   const vk::raii::CommandBuffer* rest_ = nullptr;
   std::uint64_t draws_ = 0;

@@ -37,9 +37,13 @@ Target make_target(const vkr::Device& device, vkr::Memory& memory, const vkr::Pi
 }
 
 void begin_pass(const vk::raii::CommandBuffer& commands, const vkr::Pipelines& pipelines, Target& target,
-                vkr::Barriers& barriers, vk::SubpassContents contents) {
-  barriers.discard(target.depth, Use::depth_attachment);
-  if (target.has_color()) barriers.discard(target.color, Use::color_attachment);
+                vkr::Barriers& barriers, vk::SubpassContents contents, vkr::PassPart part) {
+  if (part == vkr::PassPart::second) {
+    barriers.image(target.depth, Use::depth_attachment).image(target.color, Use::color_attachment);
+  } else {
+    barriers.discard(target.depth, Use::depth_attachment);
+    if (target.has_color()) barriers.discard(target.color, Use::color_attachment);
+  }
   if (target.resolves()) barriers.discard(target.resolve, Use::color_attachment);
   barriers.flush(commands);
 
@@ -50,7 +54,7 @@ void begin_pass(const vk::raii::CommandBuffer& commands, const vkr::Pipelines& p
   const std::array clears{far, background};
   const vk::Rect2D area({0, 0}, target.extent);
   commands.beginRenderPass(
-      vk::RenderPassBeginInfo(pipelines.render_pass(target.pass), *target.framebuffer, area, clears),
+      vk::RenderPassBeginInfo(pipelines.render_pass(target.pass, part), *target.framebuffer, area, clears),
       contents);
   if (contents == vk::SubpassContents::eInline) set_viewport(commands, target.extent);
 }

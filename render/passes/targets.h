@@ -30,10 +30,12 @@ struct Target {
                                  const vkr::Pipelines& pipelines, vkr::PassKind pass, vk::Extent2D extent,
                                  vk::SampleCountFlagBits samples);
 
-/// Barriers to attachment layouts (old contents are dropped), then the pass begins: cleared, viewport set.
-/// `contents` says whether draws or secondary command buffers follow; those set their viewport themselves.
+/// Barriers to attachment layouts (old contents are dropped), then the pass begins: cleared, viewport set. A
+/// second part keeps what the first drew. `contents` says whether draws or secondary command buffers follow;
+/// those set their viewport themselves.
 void begin_pass(const vk::raii::CommandBuffer& commands, const vkr::Pipelines& pipelines, Target& target,
-                vkr::Barriers& barriers, vk::SubpassContents contents = vk::SubpassContents::eInline);
+                vkr::Barriers& barriers, vk::SubpassContents contents = vk::SubpassContents::eInline,
+                vkr::PassPart part = vkr::PassPart::whole);
 void set_viewport(const vk::raii::CommandBuffer& commands, vk::Extent2D extent);
 
 /// Copies one image into a readback buffer, for the processor to read after the fence.

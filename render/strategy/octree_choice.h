@@ -9,9 +9,10 @@
 
 namespace scenegen::render {
 
-/// Below this many draws a secondary command buffer costs more than it saves: on lavapipe 20.9 us a draw with
-/// one in it, 2.6 with 10, 1.6 with 100, 1.4 with 1000; on an NVIDIA H200 180 ns with 10, 62 ns from 100 on.
-constexpr std::uint32_t kObjectsPerNode = 100;
+/// What a kept command buffer should hold at least. lavapipe: 20.9 us a draw with one in it, 2.6 with 10, 1.6
+/// with 100, 1.4 with 1000. NVIDIA H100: 0.7 to 1.8 us of the processor's time for every one executed, most
+/// of it in vkQueueSubmit, whatever is in it; but a change records all of a chunk again (docs/BENCHMARKS.md).
+constexpr std::uint32_t kObjectsPerNode = 200;
 
 /// Seen on lavapipe; 150 B a node and 120 B a chunk are ours.
 constexpr model::CommandMemory kCommandMemory{270, 6900, 170};

@@ -10,6 +10,7 @@ std::unique_ptr<Strategy> make_brute(const StrategyContext& context);
 std::unique_ptr<Strategy> make_inline(const StrategyContext& context);
 std::unique_ptr<Strategy> make_octree_record(const StrategyContext& context);
 std::unique_ptr<Strategy> make_octree(const StrategyContext& context);
+std::unique_ptr<Strategy> make_queries_all(const StrategyContext& context);
 
 std::span<const StrategyEntry> strategies() {
   static constexpr std::array kEntries{
@@ -17,6 +18,7 @@ std::span<const StrategyEntry> strategies() {
       StrategyEntry{"inline", "frustum culling of every object, commands recorded each frame", &make_inline},
       StrategyEntry{"octree-record", "octree culling, commands recorded each frame", &make_octree_record},
       StrategyEntry{"octree", "octree culling, commands of each node kept", &make_octree},
+      StrategyEntry{"queries-all", "the same, with an occlusion query for every node", &make_queries_all},
   };
   return kEntries;
 }

@@ -7,7 +7,8 @@ using Stage = vk::PipelineStageFlagBits2;
 using Access = vk::AccessFlagBits2;
 
 bool writes(Use use) {
-  return use == Use::transfer_write || use == Use::color_attachment || use == Use::depth_attachment;
+  return use == Use::transfer_write || use == Use::compute_write || use == Use::color_attachment ||
+         use == Use::depth_attachment;
 }
 
 }  // namespace
@@ -34,6 +35,13 @@ UseScope scope_of(Use use) {
       return {Stage::eEarlyFragmentTests | Stage::eLateFragmentTests,
               Access::eDepthStencilAttachmentRead | Access::eDepthStencilAttachmentWrite,
               vk::ImageLayout::eDepthStencilAttachmentOptimal};
+    case Use::compute_read:
+      return {Stage::eComputeShader, Access::eShaderStorageRead, vk::ImageLayout::eUndefined};
+    case Use::compute_write:
+      return {Stage::eComputeShader, Access::eShaderStorageWrite, vk::ImageLayout::eUndefined};
+    case Use::predicate:
+      return {Stage::eConditionalRenderingEXT, Access::eConditionalRenderingReadEXT,
+              vk::ImageLayout::eUndefined};
     case Use::host_read:
       return {Stage::eHost, Access::eHostRead, vk::ImageLayout::eUndefined};
   }

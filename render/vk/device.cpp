@@ -155,17 +155,38 @@ Result<std::size_t> choose(const std::vector<vk::raii::PhysicalDevice>& all,
   return *best;
 }
 
+bool has_conditional_rendering(const vk::raii::PhysicalDevice& physical) {
+  const auto extensions = physical.enumerateDeviceExtensionProperties();
+  const bool known = std::any_of(extensions.begin(), extensions.end(), [](const vk::ExtensionProperties& e) {
+    return std::strcmp(e.extensionName, VK_EXT_CONDITIONAL_RENDERING_EXTENSION_NAME) == 0;
+  });
+  if (!known) return false;
+  const auto features =
+      physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceConditionalRenderingFeaturesEXT>();
+  return features.get<vk::PhysicalDeviceConditionalRenderingFeaturesEXT>().conditionalRendering != VK_FALSE;
+}
+
 void make_logical_device(vkr::Device& d) {
   const float priority = 1.0F;
   const vk::DeviceQueueCreateInfo queue({}, d.queue_family, 1, &priority);
   const auto available = d.physical.getFeatures();
   vk::PhysicalDeviceVulkan13Features v13;
   v13.synchronization2 = VK_TRUE;
+  v13.maintenance4 = VK_TRUE;  // every 1.3 device has it; compute shaders of SPIR-V 1.6 need it
   vk::PhysicalDeviceFeatures2 features;
   features.features.samplerAnisotropy = available.samplerAnisotropy;
   features.pNext = &v13;
   vk::DeviceCreateInfo create({}, queue);
   create.pNext = &features;
+  vk::PhysicalDeviceConditionalRenderingFeaturesEXT conditional;
+  std::vector<const char*> extensions;
+  if (has_conditional_rendering(d.physical)) {
+    conditional.conditionalRendering = VK_TRUE;
+    v13.pNext = &conditional;
+    extensions.push_back(VK_EXT_CONDITIONAL_RENDERING_EXTENSION_NAME);
+    d.conditional_rendering = true;
+  }
+  create.setPEnabledExtensionNames(extensions);
   d.device = vk::raii::Device(d.physical, create);
   d.queue = vk::raii::Queue(d.device, d.queue_family, 0);
   d.max_anisotropy = available.samplerAnisotropy != VK_FALSE

@@ -32,6 +32,7 @@ struct Device {
   vk::PhysicalDeviceMemoryProperties memory_properties;
   DeviceInfo info;
   bool timestamps = false;
+  bool conditional_rendering = false;
   float max_anisotropy = 1.0F;
 
   /// Errors and warnings reported so far, and forgets them.

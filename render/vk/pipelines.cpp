@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "render/shaders/box_vert.h"
 #include "render/shaders/color_frag.h"
 #include "render/shaders/color_vert.h"
 #include "render/shaders/depth_vert.h"
@@ -30,20 +31,23 @@ vk::AttachmentDescription attachment(vk::Format format, Samples samples, vk::Att
 }
 
 /// One subpass; `color` may be null (depth only), `resolve` is used with several samples.
-vk::raii::RenderPass make_pass(const Device& device, vk::Format color, Samples samples, bool store_depth) {
+vk::raii::RenderPass make_pass(const Device& device, vk::Format color, Samples samples, bool store_depth,
+                               PassPart part = PassPart::whole) {
   using Load = vk::AttachmentLoadOp;
   using Store = vk::AttachmentStoreOp;
+  const bool first = part == PassPart::first;
+  const Load load = part == PassPart::second ? Load::eLoad : Load::eClear;
   const bool has_color = color != vk::Format::eUndefined;
-  const bool resolves = has_color && samples != Samples::e1;
+  const bool many = has_color && samples != Samples::e1;
+  const bool resolves = many && !first;
   std::vector<vk::AttachmentDescription> attachments;
-  attachments.push_back(attachment(kDepthFormat, samples, Load::eClear,
-                                   store_depth ? Store::eStore : Store::eDontCare,
+  attachments.push_back(attachment(kDepthFormat, samples, load,
+                                   store_depth || first ? Store::eStore : Store::eDontCare,
                                    vk::ImageLayout::eDepthStencilAttachmentOptimal));
   if (has_color)
-    attachments.push_back(attachment(color, samples, Load::eClear,
-                                     resolves ? Store::eDontCare : Store::eStore,
+    attachments.push_back(attachment(color, samples, load, resolves ? Store::eDontCare : Store::eStore,
                                      vk::ImageLayout::eColorAttachmentOptimal));
-  if (resolves)
+  if (many)  // of a first part too, though unused, so that one framebuffer serves all
     attachments.push_back(attachment(color, Samples::e1, Load::eDontCare, Store::eStore,
                                      vk::ImageLayout::eColorAttachmentOptimal));
   const vk::AttachmentReference depth_ref(0, vk::ImageLayout::eDepthStencilAttachmentOptimal);
@@ -80,6 +84,7 @@ struct Recipe {
   Samples samples = Samples::e1;
   bool vertices = true;
   bool color = true;
+  bool write_color = true;
   bool blend = false;
   bool write_depth = true;
   vk::CompareOp compare = vk::CompareOp::eGreater;
@@ -100,7 +105,7 @@ vk::raii::Pipeline build(const Device& device, vk::PipelineLayout layout, const 
                                                       recipe.compare);
   using Mask = vk::ColorComponentFlagBits;
   vk::PipelineColorBlendAttachmentState target;
-  target.colorWriteMask = Mask::eR | Mask::eG | Mask::eB | Mask::eA;
+  if (recipe.write_color) target.colorWriteMask = Mask::eR | Mask::eG | Mask::eB | Mask::eA;
   if (recipe.blend) {  // premultiplied alpha
     target.blendEnable = VK_TRUE;
     target.srcColorBlendFactor = target.srcAlphaBlendFactor = vk::BlendFactor::eOne;
@@ -156,8 +161,14 @@ Pipelines::Pipelines(const Device& device, vk::SampleCountFlagBits color_samples
       vk::raii::DescriptorSetLayout(device.device, vk::DescriptorSetLayoutCreateInfo({}, texture_binding));
   const std::array sets{*frame_set_layout_, *texture_set_layout_};
   layout_ = vk::raii::PipelineLayout(device.device, vk::PipelineLayoutCreateInfo({}, sets));
-  color_pass_ = make_pass(device, kColorFormat, color_samples, false);
-  ids_pass_ = make_pass(device, kIdFormat, Samples::e1, true);
+  const vk::PushConstantRange corners(Stage::eVertex, 0, 2 * sizeof(glm::vec4));
+  box_layout_ =
+      vk::raii::PipelineLayout(device.device, vk::PipelineLayoutCreateInfo({}, *frame_set_layout_, corners));
+  for (const PassPart part : {PassPart::whole, PassPart::first, PassPart::second}) {
+    const auto i = static_cast<std::size_t>(part);
+    color_passes_[i] = make_pass(device, kColorFormat, color_samples, false, part);
+    ids_passes_[i] = make_pass(device, kIdFormat, Samples::e1, true, part);
+  }
   shadow_pass_ = make_pass(device, vk::Format::eUndefined, Samples::e1, true);
   color_vert_ = module(device, kColorVert);
   color_frag_ = module(device, kColorFrag);
@@ -166,18 +177,19 @@ Pipelines::Pipelines(const Device& device, vk::SampleCountFlagBits color_samples
   shadow_frag_ = module(device, kShadowFrag);
   sky_vert_ = module(device, kSkyVert);
   sky_frag_ = module(device, kSkyFrag);
+  box_vert_ = module(device, kBoxVert);
   sky_ = make_sky();
 }
 
-vk::RenderPass Pipelines::render_pass(PassKind pass) const {
-  switch (pass) {
-    case PassKind::ids:
-      return *ids_pass_;
-    case PassKind::shadow:
-      return *shadow_pass_;
-    default:
-      return *color_pass_;
-  }
+vk::RenderPass Pipelines::render_pass(PassKind pass, PassPart part) const {
+  if (pass == PassKind::shadow) return *shadow_pass_;
+  return *(pass == PassKind::ids ? ids_passes_ : color_passes_)[static_cast<std::size_t>(part)];
+}
+
+vk::Pipeline Pipelines::box(PassKind pass) {
+  vk::raii::Pipeline& box = pass == PassKind::color ? color_box_ : ids_box_;
+  if (!*box) box = make_box(pass);
+  return *box;
 }
 
 vk::Pipeline Pipelines::get(const PipelineKey& key) {
@@ -220,13 +232,27 @@ vk::raii::Pipeline Pipelines::make(const PipelineKey& key) const {
   return build(device_, *layout_, recipe);
 }
 
+vk::raii::Pipeline Pipelines::make_box(PassKind pass) const {
+  const std::array stages{
+      vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eVertex, *box_vert_, "main")};
+  Recipe recipe;
+  recipe.stages = stages;
+  recipe.pass = render_pass(pass);
+  recipe.samples = pass == PassKind::color ? color_samples_ : Samples::e1;
+  recipe.vertices = false;
+  recipe.write_color = false;
+  recipe.write_depth = false;
+  recipe.compare = vk::CompareOp::eGreaterOrEqual;
+  return build(device_, *box_layout_, recipe);
+}
+
 vk::raii::Pipeline Pipelines::make_sky() const {
   const std::array stages{
       vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eVertex, *sky_vert_, "main"),
       vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eFragment, *sky_frag_, "main")};
   Recipe recipe;
   recipe.stages = stages;
-  recipe.pass = *color_pass_;
+  recipe.pass = render_pass(PassKind::color);
   recipe.samples = color_samples_;
   recipe.vertices = false;
   recipe.write_depth = false;

@@ -14,6 +14,10 @@ constexpr vk::Format kColorFormat = vk::Format::eR8G8B8A8Srgb;
 constexpr vk::Format kIdFormat = vk::Format::eR32Uint;
 constexpr vk::Format kDepthFormat = vk::Format::eD32Sfloat;
 
+/// A pass can be drawn whole, or in two parts with something between them that is no drawing: the first
+/// clears and stores, the second loads and resolves. Commands recorded for one run in all of them.
+enum class PassPart : std::uint8_t { whole, first, second };
+
 enum class PassKind : std::uint8_t { color, ids, shadow };
 
 struct PipelineKey {
@@ -31,27 +35,34 @@ class Pipelines {
  public:
   Pipelines(const Device& device, vk::SampleCountFlagBits color_samples);
 
-  [[nodiscard]] vk::RenderPass render_pass(PassKind pass) const;
+  [[nodiscard]] vk::RenderPass render_pass(PassKind pass, PassPart part = PassPart::whole) const;
   [[nodiscard]] vk::PipelineLayout layout() const { return *layout_; }
   [[nodiscard]] vk::DescriptorSetLayout frame_set_layout() const { return *frame_set_layout_; }
   [[nodiscard]] vk::DescriptorSetLayout texture_set_layout() const { return *texture_set_layout_; }
   [[nodiscard]] vk::Pipeline get(const PipelineKey& key);
   [[nodiscard]] vk::Pipeline sky() const { return *sky_; }
+  /// Draws a box given by two push constants (vec4 lo, hi) for an occlusion query: both sides, nothing
+  /// written, equal depth passes. Not for the shadow pass.
+  [[nodiscard]] vk::Pipeline box(PassKind pass);
+  [[nodiscard]] vk::PipelineLayout box_layout() const { return *box_layout_; }
 
  private:
   [[nodiscard]] vk::raii::Pipeline make(const PipelineKey& key) const;
   [[nodiscard]] vk::raii::Pipeline make_sky() const;
+  [[nodiscard]] vk::raii::Pipeline make_box(PassKind pass) const;
 
   const Device& device_;
   vk::SampleCountFlagBits color_samples_;
   vk::raii::DescriptorSetLayout frame_set_layout_{nullptr};
   vk::raii::DescriptorSetLayout texture_set_layout_{nullptr};
   vk::raii::PipelineLayout layout_{nullptr};
-  vk::raii::RenderPass color_pass_{nullptr}, ids_pass_{nullptr}, shadow_pass_{nullptr};
+  vk::raii::PipelineLayout box_layout_{nullptr};
+  vk::raii::RenderPass color_passes_[3]{nullptr, nullptr, nullptr}, ids_passes_[3]{nullptr, nullptr, nullptr};
+  vk::raii::RenderPass shadow_pass_{nullptr};
   vk::raii::ShaderModule color_vert_{nullptr}, color_frag_{nullptr}, depth_vert_{nullptr}, ids_frag_{nullptr},
-      shadow_frag_{nullptr}, sky_vert_{nullptr}, sky_frag_{nullptr};
+      shadow_frag_{nullptr}, sky_vert_{nullptr}, sky_frag_{nullptr}, box_vert_{nullptr};
   std::map<PipelineKey, vk::raii::Pipeline> pipelines_;
-  vk::raii::Pipeline sky_{nullptr};
+  vk::raii::Pipeline sky_{nullptr}, color_box_{nullptr}, ids_box_{nullptr};
 };
 
 }  // namespace scenegen::render::vkr

@@ -14,6 +14,9 @@ enum class Use : std::uint8_t {
   sampled,           ///< sampled in fragment shaders
   color_attachment,  ///< drawn to, blended, resolved to
   depth_attachment,  ///< tested and written
+  compute_read,      ///< storage reads of compute shaders
+  compute_write,     ///< storage writes of compute shaders
+  predicate,         ///< read by conditional rendering
   host_read,         ///< read by the processor after the fence
 };
 

@@ -20,26 +20,33 @@ RendererOptions path_options(const std::string& strategy) {
 
 TEST_CASE("every strategy gives brute's depth, ids and colours on six paths") {
   for (const Path& path : strategy_paths(40, 450)) {
-    RendererOptions options = path_options("brute");
-    const Run brute = run_path(path, options);
-    options.how.reversed = true;
-    const Run backwards = run_path(path, options);
-    for (const StrategyEntry& entry : strategies()) {
-      if (entry.name == "brute") continue;
-      INFO(path.name << ", " << entry.name);
-      const Run run = run_path(path, path_options(std::string(entry.name)));
-      const Difference d = difference(run, brute, backwards);
-      CHECK(d.depth == 0);
-      CHECK(d.ids == 0);
-      CHECK(d.color == 0);
-      CHECK(d.ties * 1000 <= d.pixels);
-      CHECK(run.warnings.empty());
-      std::uint64_t drawn = 0, drawn_by_brute = 0;
-      for (std::size_t i = 0; i < run.frames.size(); ++i) {
-        drawn += run.frames[i].report.drawn;
-        drawn_by_brute += brute.frames[i].report.drawn;
+    DYNAMIC_SECTION(path.name) {
+      RendererOptions options = path_options("brute");
+      const Run brute = run_path(path, options);
+      options.how.reversed = true;
+      const Run backwards = run_path(path, options);
+      for (const StrategyEntry& entry : strategies()) {
+        if (entry.name == "brute") continue;
+        INFO(entry.name);
+        const Run run = run_path(path, path_options(std::string(entry.name)));
+        const Difference d = difference(run, brute, backwards);
+        CHECK(d.depth == 0);
+        CHECK(d.ids == 0);
+        CHECK(d.color == 0);
+        CHECK(d.ties * 1000 <= d.pixels);
+        CHECK(run.warnings.empty());
+        std::uint64_t drawn = 0, drawn_by_brute = 0, reveals = 0, hidden = 0;
+        for (std::size_t i = 0; i < run.frames.size(); ++i) {
+          drawn += run.frames[i].report.drawn;
+          drawn_by_brute += brute.frames[i].report.drawn;
+          reveals += run.frames[i].report.reveals;
+          hidden += run.frames[i].report.believed_hidden;
+        }
+        CHECK(drawn < drawn_by_brute);
+        // What was believed hidden came into view on every path, and was drawn in the frame in which it did.
+        CHECK((reveals > 0) == (entry.name == "queries-all"));
+        CHECK((hidden > 100) == (entry.name == "queries-all"));
       }
-      CHECK(drawn < drawn_by_brute);
     }
   }
 }
@@ -92,4 +99,57 @@ TEST_CASE("without memory for an octree, or when it runs out, octree draws as in
     const Difference d = difference(*run, wanted, wanted);
     CHECK(d.depth + d.ids == 0);
   }
+}
+
+TEST_CASE(
+    "the same under late visibility fails: it is the predicates of the same frame that make queries exact") {
+  for (const Path& path : strategy_paths(40, 450)) {
+    DYNAMIC_SECTION(path.name) {
+      RendererOptions options = path_options("brute");
+      options.outputs.color = false;
+      const Run brute = run_path(path, options);
+      options = path_options("queries-all");
+      options.outputs.color = false;
+      options.how.late_visibility = true;
+      const Run late = run_path(path, options);
+      std::size_t missing = 0;
+      std::size_t wrong = 0;
+      for (std::size_t f = 0; f < brute.frames.size(); ++f) {
+        for (std::size_t i = 0; i < brute.frames[f].depth.size(); ++i) {
+          missing += late.frames[f].depth[i] < brute.frames[f].depth[i] ? 1 : 0;
+          wrong += late.frames[f].depth[i] > brute.frames[f].depth[i] ? 1 : 0;
+        }
+      }
+      CHECK(missing > 0);
+      CHECK(wrong == 0);
+      CHECK(late.warnings.empty());
+    }
+  }
+}
+
+TEST_CASE("queries are exact with four samples and one, and with full barriers") {
+  const Path path = std::move(strategy_paths(24, 450)[2]);
+  for (const std::uint32_t samples : {1U, 4U}) {
+    RendererOptions options = path_options("brute");
+    options.samples = samples;
+    const Run brute = run_path(path, options);
+    options.how.reversed = true;
+    const Run backwards = run_path(path, options);
+    options = path_options("queries-all");
+    options.samples = samples;
+    options.full_barriers = samples == 1;
+    const Run run = run_path(path, options);
+    const Difference d = difference(run, brute, backwards);
+    CHECK(d.depth + d.ids + d.color == 0);
+  }
+}
+
+TEST_CASE("a device without conditional rendering falls back to late visibility, with a warning") {
+  const Path path = std::move(strategy_paths(6, 450)[0]);
+  RendererOptions options = path_options("queries-all");
+  options.how.no_conditional_rendering = true;
+  const Run run = run_path(path, options);
+  REQUIRE(run.warnings.size() == 1);
+  CHECK(run.warnings[0].find("--late-visibility") != std::string::npos);
+  CHECK(run.frames.back().report.queries > 0);
 }

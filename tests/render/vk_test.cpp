@@ -100,6 +100,41 @@ TEST_CASE("an image goes from its last use to the next, and remembers it") {
   CHECK(image.last_use == Use::depth_attachment);
 }
 
+TEST_CASE("results of queries reach the predicates, and the next frame's ones wait for them") {
+  Barriers barriers;
+  barriers.buffer({}, Use::transfer_write, Use::compute_read)
+      .buffer({}, Use::predicate, Use::compute_write)
+      .buffer({}, Use::compute_write, Use::predicate)
+      .buffer({}, Use::predicate, Use::transfer_write)
+      .buffer({}, Use::transfer_write, Use::predicate);
+  const auto& b = barriers.buffers();
+  REQUIRE(b.size() == 5);
+  CHECK(b[0].srcAccessMask == Access::eTransferWrite);
+  CHECK(b[0].dstStageMask == Stage::eComputeShader);
+  CHECK(b[0].dstAccessMask == Access::eShaderStorageRead);
+  CHECK(b[1].srcStageMask == Stage::eConditionalRenderingEXT);
+  CHECK(b[1].srcAccessMask == vk::AccessFlags2{});
+  CHECK(b[1].dstAccessMask == Access::eShaderStorageWrite);
+  CHECK(b[2].srcAccessMask == Access::eShaderStorageWrite);
+  CHECK(b[2].dstStageMask == Stage::eConditionalRenderingEXT);
+  CHECK(b[2].dstAccessMask == Access::eConditionalRenderingReadEXT);
+  CHECK(b[3].srcStageMask == Stage::eConditionalRenderingEXT);
+  CHECK(b[3].dstAccessMask == Access::eTransferWrite);
+  CHECK(b[4].srcAccessMask == Access::eTransferWrite);
+  CHECK(b[4].dstStageMask == Stage::eConditionalRenderingEXT);
+}
+
+TEST_CASE("what the first part of a pass drew is there for the second") {
+  Image image;
+  image.aspect = vk::ImageAspectFlagBits::eDepth;
+  Barriers barriers;
+  barriers.discard(image, Use::depth_attachment).image(image, Use::depth_attachment);
+  const auto& kept = barriers.images()[1];
+  CHECK(kept.oldLayout == Layout::eDepthStencilAttachmentOptimal);
+  CHECK(static_cast<bool>(kept.srcAccessMask & Access::eDepthStencilAttachmentWrite));
+  CHECK(static_cast<bool>(kept.dstAccessMask & Access::eDepthStencilAttachmentRead));
+}
+
 TEST_CASE("readback reaches the processor") {
   Barriers barriers;
   barriers.buffer({}, Use::transfer_write, Use::host_read);
