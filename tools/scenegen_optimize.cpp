@@ -115,7 +115,9 @@ void add_change(Report& out, const std::string& key, const std::string& label, s
 
 std::string joined(std::uint64_t equal, std::uint64_t stretched = 0) {
   std::string out = equal == 0 ? "" : human_count(equal) + " equal to others";
-  if (stretched > 0) out += (out.empty() ? "" : ", ") + human_count(stretched) + " stretched copies";
+  if (stretched > 0)
+    out += (out.empty() ? "" : ", ") + human_count(stretched) +
+           (stretched == 1 ? " stretched copy" : " stretched copies");
   return out;
 }
 

@@ -15,7 +15,7 @@ class Surveyor {
  public:
   Survey run(const ReadResult& read) {
     for (const Ignored& entry : read.ignored) {
-      if (!unseen(entry.what)) losses_.add(entry.where, entry.what, entry.count);
+      if (!unseen(entry.what)) losses_.add(entry.where, thing(entry.what), entry.count);
     }
     const simdjson::padded_string text(read.source->json);
     simdjson::ondemand::parser parser;
@@ -37,6 +37,13 @@ class Surveyor {
  private:
   /// Pruning takes away what is not shown; that is no loss.
   static bool unseen(std::string_view what) { return what == "nodes outside the scene"; }
+
+  /// "skins are drawn at rest" -> "skins"
+  static std::string_view thing(std::string_view what) {
+    constexpr std::string_view kAtRest = " are drawn at rest";
+    if (what.ends_with(kAtRest)) what.remove_suffix(kAtRest.size());
+    return what;
+  }
 
   void member(std::string_view key, Value& value, const Place& at) {
     if (key == "nodes") {

@@ -38,6 +38,7 @@ bool write_compressed(const scenegen::Scene& scene, const std::filesystem::path&
   for (const Layout layout : {Layout::nodes, Layout::instances}) {
     scenegen::gltf::WriteOptions options(layout, VisibilityEncoding::scale);
     options.draco.on = true;
+    options.id_table = layout == Layout::instances;
     const std::string name = layout == Layout::nodes ? "draco_nodes.gltf" : "draco_instances.glb";
     const auto report = scenegen::gltf::write(scene, (folder / name).string(), options);
     if (!report || report->draco_geometries == 0) {
