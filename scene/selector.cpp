@@ -173,11 +173,22 @@ void ObjectFacts::index() {
           [&](std::uint32_t i) { return std::pair(s.nodes.extras[i].path, s.extra_text(i)); });
 }
 
+std::string_view ObjectFacts::guid(ObjectId object) const {
+  const State& s = *state_;
+  std::uint32_t node = s.node_of_object[object.value];
+  for (; node != SourceNodes::kNone; node = s.nodes.parent[node]) {
+    for (std::uint32_t e = s.first_extra[node]; e < s.first_extra[node + 1]; ++e) {
+      if (s.path_is_guid[s.nodes.extras[e].path]) return s.extra_text(e);
+    }
+  }
+  return {};
+}
+
 // ---- Selector
 
 namespace {
 
-enum class Kind : std::uint8_t { name, extras, guid, material, subtree };
+using Kind = Selector::Kind;
 
 /// A glob or a regular expression, and what its matches begin with.
 struct Pattern {
@@ -416,17 +427,37 @@ Result<Selector> Selector::parse(std::string_view text) {
   return Selector(std::move(state));
 }
 
-Selector Selector::with_name(std::string_view name) {
+Selector Selector::with_literal(Kind kind, std::string_view value) {
   auto state = std::make_unique<State>();
-  state->pattern = literal(name);
+  state->kind = kind;
+  state->pattern = literal(value);
   return Selector(std::move(state));
 }
 
+Selector Selector::with_name(std::string_view name) {
+  return with_literal(Kind::name, name);
+}
+
 Selector Selector::with_guid(std::string_view guid) {
-  auto state = std::make_unique<State>();
-  state->kind = Kind::guid;
-  state->pattern = literal(guid);
-  return Selector(std::move(state));
+  return with_literal(Kind::guid, guid);
+}
+
+Selector Selector::with_extra(std::string_view key, std::string_view value) {
+  Selector out = with_literal(Kind::extras, value);
+  out.state_->key = key;
+  return out;
+}
+
+Selector Selector::with_subtree(std::string_view node_name) {
+  return with_literal(Kind::subtree, node_name);
+}
+
+Selector::Kind Selector::kind() const {
+  return state_->kind;
+}
+
+bool Selector::is_literal() const {
+  return state_->pattern.expression == nullptr && state_->pattern.glob.is_literal();
 }
 
 std::vector<ObjectId> Selector::select(const ObjectFacts& facts) const {

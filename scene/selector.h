@@ -22,6 +22,8 @@ class ObjectFacts {
   [[nodiscard]] static Result<ObjectFacts> make(const Scene& scene, const gltf::SourceDocument& source);
   /// Sorts what there is to look up, so that thousands of selectors are quick. One or a few are without it.
   void index();
+  /// The identifier (Selector::with_guid) of the object's node or of the nearest above that has one, or "".
+  [[nodiscard]] std::string_view guid(ObjectId object) const;
   ~ObjectFacts();
   ObjectFacts(ObjectFacts&&) noexcept;
   ObjectFacts& operator=(ObjectFacts&&) noexcept;
@@ -42,6 +44,7 @@ class ObjectFacts {
 /// Every value is a glob (scene/glob.h) behind '=' and a regular expression behind '~'.
 class Selector {
  public:
+  enum class Kind : std::uint8_t { name, extras, guid, material, subtree };
   /// Errors (usage, `where` empty): an unknown kind, a pattern that does not parse, above 4096 bytes.
   [[nodiscard]] static Result<Selector> parse(std::string_view text);
   /// The object of that name, whatever its characters.
@@ -50,6 +53,13 @@ class Selector {
   /// has it. An identifier is a member of extras named guid, GlobalId, ifcGuid or ifcGlobalId, in any case
   /// and with or without underscores, at any depth.
   [[nodiscard]] static Selector with_guid(std::string_view guid);
+  /// extras.KEY and subtree with a value whose characters mean themselves.
+  [[nodiscard]] static Selector with_extra(std::string_view key, std::string_view value);
+  [[nodiscard]] static Selector with_subtree(std::string_view node_name);
+
+  [[nodiscard]] Kind kind() const;
+  /// Neither wildcards nor a regular expression.
+  [[nodiscard]] bool is_literal() const;
   /// Ascending.
   [[nodiscard]] std::vector<ObjectId> select(const ObjectFacts& facts) const;
   ~Selector();
@@ -59,6 +69,7 @@ class Selector {
  private:
   struct State;
   explicit Selector(std::unique_ptr<State> state);
+  [[nodiscard]] static Selector with_literal(Kind kind, std::string_view value);
   std::unique_ptr<State> state_;
 };
 

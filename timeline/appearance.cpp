@@ -8,6 +8,7 @@
 #include "scene/limits.h"
 #include "scene/parallel.h"
 #include "scene/random.h"
+#include "timeline/cell_grid.h"
 #include "timeline/track_table.h"
 
 namespace scenegen::timeline {
@@ -112,53 +113,6 @@ Result<std::uint64_t> check(const Scene& scene, const AppearanceOptions& options
   }
   if (Result<void> interval = check_interval(options, *cells); !interval) return forward_error(interval);
   return cells;
-}
-
-Box z_up_from_y_up(const Box& b) {
-  // z changes sign, so its ends change places; + 0 turns -0 into 0.
-  return {scenegen::z_up_from_y_up({b.lo.x, b.lo.y, b.hi.z}) + 0.0F,
-          scenegen::z_up_from_y_up({b.hi.x, b.hi.y, b.lo.z}) + 0.0F};
-}
-
-/// The grid of cells over a box, author's frame.
-class CellGrid {
- public:
-  CellGrid(glm::uvec3 cells, const Box& box_z_up_m) : cells_(cells), lo_(box_z_up_m.lo) {
-    const glm::dvec3 size = glm::dvec3(box_z_up_m.hi) - lo_;
-    for (int i = 0; i < 3; ++i) per_m_[i] = size[i] > 0 ? cells[i] / size[i] : 0.0;
-  }
-  /// Index x + cells.x * (y + cells.y * z) of the cell that holds the centre of a world box. What lies on the
-  /// border of two cells is of the upper one. Bricks stand in rows, so centres on borders are common, and in
-  /// float32 they lie a few ulp to either side: a centre within 2^-21 of the grid's size below a border (4
-  /// ulp) counts as on it, so that a row does not fall apart, however the file spells its transforms.
-  [[nodiscard]] std::size_t cell(const Box& world_y_up_m) const {
-    const glm::dvec3 twice = glm::dvec3(world_y_up_m.lo) + glm::dvec3(world_y_up_m.hi);
-    const glm::dvec3 centre(0.5 * twice.x, -0.5 * twice.z, 0.5 * twice.y);
-    glm::uvec3 at;
-    for (int i = 0; i < 3; ++i) {
-      const double u = (centre[i] - lo_[i]) * per_m_[i] + cells_[i] * 0x1p-21;
-      at[i] = !(u > 0) ? 0U : u >= cells_[i] ? cells_[i] - 1 : static_cast<std::uint32_t>(u);
-    }
-    return at.x + std::size_t{cells_.x} * (at.y + std::size_t{cells_.y} * at.z);
-  }
-
- private:
-  glm::uvec3 cells_;
-  glm::dvec3 lo_;
-  glm::dvec3 per_m_{};
-};
-
-/// World boxes at rest; an object without vertices is a point at its origin.
-std::vector<Box> placed_bounds(const Scene& scene, unsigned threads) {
-  std::vector<Box> bounds = object_bounds(scene, threads);
-  std::vector<glm::mat4> frames;
-  for (std::size_t i = 0; i < bounds.size(); ++i) {
-    if (!bounds[i].empty()) continue;
-    if (frames.empty()) frames = rest_frame_matrices(scene);
-    bounds[i] = {};
-    bounds[i].add(glm::vec3(rest_world_from_object(scene, frames, ObjectId(i))[3]));
-  }
-  return bounds;
 }
 
 Box united(std::span<const Box> boxes, std::span<const std::uint8_t> exempt, unsigned threads) {

@@ -20,8 +20,8 @@ tl::unexpected<Error> bad(const Task& task, std::string what) {
 }
 
 std::string named(const Task& task) {
-  return task.name == task.id || task.name.empty() ? quoted(task.id)
-                                                   : quoted(task.id) + " (" + quoted(task.name) + ")";
+  return task.name == task.id || task.name.empty() ? in_quotes(task.id)
+                                                   : in_quotes(task.id) + " (" + in_quotes(task.name) + ")";
 }
 
 class Dates {

@@ -56,7 +56,7 @@ Result<glm::vec3> parse_offset(std::string_view text) {
   if (ok && count == 3) return out;
   return fail(
       ErrorKind::bad_input, "",
-      quoted(text) + ": wanted three numbers of metres, x y z with z up, each within 1000000 (12 0 -3.5)");
+      in_quotes(text) + ": wanted three numbers of metres, x y z with z up, each within 1000000 (12 0 -3.5)");
 }
 
 Result<std::string> read_bytes(const std::string& path) {
@@ -142,10 +142,10 @@ Result<void> take_predecessors(Task& task, std::uint32_t self, std::string_view 
     }
     if (found == ids.end()) {
       done = fail(ErrorKind::bad_input, "",
-                  "no task is called " + quoted(piece) +
+                  "no task is called " + in_quotes(piece) +
                       " (a predecessor is an id, alone or with FS, SS, FF or SF and a lag: 3FS+2d)");
     } else if (found->second == self) {
-      done = fail(ErrorKind::bad_input, "", quoted(piece) + ": a task cannot be its own predecessor");
+      done = fail(ErrorKind::bad_input, "", in_quotes(piece) + ": a task cannot be its own predecessor");
     } else {
       link.task = found->second;
       task.predecessors.push_back(link);

@@ -29,7 +29,7 @@ class CsvPlan {
     return column(c) == kAbsent ? std::string_view() : trimmed(row.cells[column(c)]);
   }
   [[nodiscard]] std::string at(std::uint64_t line, Column c) const {
-    return at_line(name_, line) + ", column " + quoted(titles_[column(c)]);
+    return at_line(name_, line) + ", column " + in_quotes(titles_[column(c)]);
   }
   Result<void> take_header(CsvRow& row);
   Result<void> take_task(CsvRow& row);
@@ -55,13 +55,14 @@ Result<void> CsvPlan::take_header(CsvRow& row) {
     const Column c = column_of(titles_[i]);
     if (c == Column::none) {
       if (!trimmed(titles_[i]).empty())
-        ignored.append(ignored.empty() ? "" : ", ").append(quoted(titles_[i]));
+        ignored.append(ignored.empty() ? "" : ", ").append(in_quotes(titles_[i]));
       continue;
     }
     std::size_t& place = columns_[static_cast<std::size_t>(c)];
     if (place != kAbsent) {
-      return fail(ErrorKind::bad_input, at_line(name_, row.line),
-                  "columns " + quoted(titles_[place]) + " and " + quoted(titles_[i]) + " mean the same");
+      return fail(
+          ErrorKind::bad_input, at_line(name_, row.line),
+          "columns " + in_quotes(titles_[place]) + " and " + in_quotes(titles_[i]) + " mean the same");
     }
     place = i;
   }
@@ -107,8 +108,9 @@ Result<void> CsvPlan::take_task(CsvRow& row) {
   if (task.name.empty()) task.name = task.id;
   const auto [other, fresh] = ids_.emplace(task.id, index);
   if (!fresh) {
-    return fail(ErrorKind::bad_input, at(row.line, Column::id),
-                quoted(task.id) + " is taken by the task on line " + std::to_string(lines_[other->second]));
+    return fail(
+        ErrorKind::bad_input, at(row.line, Column::id),
+        in_quotes(task.id) + " is taken by the task on line " + std::to_string(lines_[other->second]));
   }
   lines_.push_back(row.line);
   parents_.emplace_back(cell(row, Column::parent));
@@ -122,7 +124,7 @@ Result<void> CsvPlan::resolve(std::uint32_t index) {
     const auto found = ids_.find(parents_[index]);
     if (found == ids_.end()) {
       return fail(ErrorKind::bad_input, at(lines_[index], Column::parent),
-                  "no task has the id " + quoted(parents_[index]));
+                  "no task has the id " + in_quotes(parents_[index]));
     }
     task.parent = found->second;
     plan_.tasks[found->second].summary = true;

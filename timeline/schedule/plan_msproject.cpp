@@ -122,7 +122,7 @@ std::int64_t ProjectReader::whole(const pugi::xml_node& node, std::string_view n
   const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), out);
   constexpr std::int64_t kMost = 0x7FFFFFFF;
   if (code != std::errc() || end != digits.data() + digits.size() || out > kMost || out < -kMost)
-    reject(where, std::string(name) + " " + quoted(digits) + " is no whole number of 32 bits");
+    reject(where, std::string(name) + " " + in_quotes(digits) + " is no whole number of 32 bits");
   return out;
 }
 
@@ -130,7 +130,7 @@ bool ProjectReader::flag(const pugi::xml_node& node, std::string_view name, cons
   const std::string_view value = text(node, name);
   if (value.empty() || value == "0" || value == "false") return false;
   if (value == "1" || value == "true") return true;
-  reject(where, std::string(name) + " " + quoted(value) + " is none of 0, 1, false, true");
+  reject(where, std::string(name) + " " + in_quotes(value) + " is none of 0, 1, false, true");
 }
 
 std::optional<CivilSeconds> ProjectReader::date(const pugi::xml_node& node, std::string_view name,
@@ -311,8 +311,8 @@ Plan ProjectReader::read() {
   }
   const pugi::xml_node project = document.document_element();
   if (local_name(project) != "Project") {
-    reject(place(project),
-           "the root element is " + quoted(local_name(project)) + "; wanted the 'Project' of MS Project XML");
+    reject(place(project), "the root element is " + in_quotes(local_name(project)) +
+                               "; wanted the 'Project' of MS Project XML");
   }
   namespace_ = namespace_of(project);
   minutes_per_day_ = static_cast<double>(whole(project, "MinutesPerDay", 480, place(project) + ": Project"));

@@ -50,7 +50,7 @@ struct DateParts {
 constexpr std::string_view kWantedDate = "wanted a date YYYY-MM-DD, with a time YYYY-MM-DDTHH:MM";
 
 tl::unexpected<Error> bad(std::string_view text, const std::string& what) {
-  return fail(ErrorKind::bad_input, "", quoted(text) + ": " + what);
+  return fail(ErrorKind::bad_input, "", in_quotes(text) + ": " + what);
 }
 
 /// Days and months in numbers, year last: which is which?
@@ -196,7 +196,7 @@ std::string plain_word(std::string_view text) {
   return out;
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   constexpr std::size_t kMost = 60;
   std::size_t end = std::min(text.size(), kMost);
   while (end < text.size() && end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
@@ -342,7 +342,7 @@ Result<Profile> parse_task_type(std::string_view text) {
       if (type.words.find(" " + plain + " ") != std::string_view::npos) return type.profile;
     }
   }
-  std::string what = "unknown type " + quoted(text);
+  std::string what = "unknown type " + in_quotes(text);
   std::string list;
   std::string_view nearest;
   std::size_t least = plain.size() / 3 + 1;

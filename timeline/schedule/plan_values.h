@@ -39,6 +39,6 @@ struct LinkText {
 [[nodiscard]] std::string plain_word(std::string_view text);
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 /// Text of a file fit for one line of output, in quotes, cut at 60 bytes (between characters).
-[[nodiscard]] std::string quoted(std::string_view text);
+[[nodiscard]] std::string in_quotes(std::string_view text);
 
 }  // namespace scenegen::timeline
