@@ -4,35 +4,101 @@
 #include <cmath>
 #include <string>
 
+#include "timeline/calendar.h"
 #include "tools/text.h"
 
 namespace scenegen::tools {
 namespace {
 
-Result<double> parse_moment(std::string_view text, double duration_s) {
+/// The timeline that times are read for.
+struct Span {
+  double duration_s;
+  const Calendar* calendar;
+
+  [[nodiscard]] std::string end() const {
+    const std::string seconds = shortest_float(static_cast<float>(duration_s)) + " s";
+    return calendar == nullptr ? seconds : timeline::date_at(*calendar, duration_s) + " (" + seconds + ")";
+  }
+};
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// Begins like 2024-03.
+bool is_date(std::string_view text) {
+  const std::size_t dash = text.find('-');
+  return dash == 4 && text.size() > 5 && std::all_of(text.begin(), text.begin() + 4, is_digit) &&
+         is_digit(text[5]);
+}
+
+tl::unexpected<Error> no_calendar(std::string_view text) {
+  return fail(
+      ErrorKind::usage, "",
+      "'" + std::string(text) + "': the file has no calendar (scenegen schedule makes files that have)");
+}
+
+Result<double> parse_date(std::string_view text, const Span& span) {
+  if (span.calendar == nullptr) return no_calendar(text);
+  auto time_s = timeline::time_of_date(*span.calendar, text);
+  if (!time_s) return time_s;
+  // Keys are float32 and so may the end be: a date at the end is not after it.
+  if (static_cast<float>(*time_s) > static_cast<float>(span.duration_s))
+    return fail(ErrorKind::usage, "",
+                "'" + std::string(text) + "' is after the end of the timeline, " + span.end());
+  if (*time_s < 0) {
+    return fail(
+        ErrorKind::usage, "",
+        "'" + std::string(text) + "' is before the timeline begins, " + timeline::date_at(*span.calendar, 0));
+  }
+  return time_s;
+}
+
+Result<double> parse_moment(std::string_view text, const Span& span) {
+  if (is_date(text)) return parse_date(text, span);
   if (text.ends_with('%')) {
     Result<double> percent = parse_real(text.substr(0, text.size() - 1), 0.0, 100.0);
     if (!percent) return percent;
-    return *percent * 0.01 * duration_s;
+    return *percent * 0.01 * span.duration_s;
   }
   Result<double> seconds = parse_real(text, 0.0, 1e9);
-  if (seconds && static_cast<float>(*seconds) > static_cast<float>(duration_s))
+  if (seconds && static_cast<float>(*seconds) > static_cast<float>(span.duration_s))
     return fail(ErrorKind::usage, "",
-                "'" + std::string(text) + "' is after the end of the timeline, " +
-                    shortest_float(static_cast<float>(duration_s)) + " s");
+                "'" + std::string(text) + "' is after the end of the timeline, " + span.end());
   return seconds;
 }
 
-Result<void> add_range(std::string_view text, double duration_s, std::vector<double>& out) {
-  const std::size_t first = text.find(':');
-  const std::size_t second = text.find(':', first + 1);
-  if (second == std::string_view::npos || text.find(':', second + 1) != std::string_view::npos)
-    return fail(ErrorKind::usage, "", "'" + std::string(text) + "' is no FROM:TO:STEP");
-  Result<double> from = parse_moment(text.substr(0, first), duration_s);
+/// "7d", "12h": a number with a unit of days.
+Result<double> parse_step(std::string_view text, const Span& span) {
+  const bool unit = !text.empty() && is_digit(text[0]) && text.back() >= 'a' && text.back() <= 'z';
+  if (!unit) return parse_moment(text, span);
+  if (span.calendar == nullptr) return no_calendar(text);
+  return timeline::time_of_duration(*span.calendar, text);
+}
+
+/// Between colons, but for that of 2024-03-15T12:00.
+std::vector<std::string_view> fields_of(std::string_view text) {
+  std::vector<std::string_view> out;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    std::size_t end = std::min(text.find(':', begin), text.size());
+    const std::string_view field = text.substr(begin, end - begin);
+    if (is_date(field) && field.find_first_of("Tt") != std::string_view::npos && end < text.size())
+      end = std::min(text.find(':', end + 1), text.size());
+    out.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  if (out.size() == 2 && is_date(out[0]) && out[1].size() == 2) return {text};  // 2024-03-15T12:00:30
+  return out;
+}
+
+Result<void> add_range(std::string_view text, const std::vector<std::string_view>& fields, const Span& span,
+                       std::vector<double>& out) {
+  if (fields.size() != 3) return fail(ErrorKind::usage, "", "'" + std::string(text) + "' is no FROM:TO:STEP");
+  Result<double> from = parse_moment(fields[0], span);
   if (!from) return forward_error(from);
-  Result<double> to = parse_moment(text.substr(first + 1, second - first - 1), duration_s);
+  Result<double> to = parse_moment(fields[1], span);
   if (!to) return forward_error(to);
-  Result<double> step = parse_moment(text.substr(second + 1), duration_s);
+  Result<double> step = parse_step(fields[2], span);
   if (!step) return forward_error(step);
   if (!(*step > 0.0))
     return fail(ErrorKind::usage, "", "the step of '" + std::string(text) + "' must be above 0");
@@ -47,16 +113,18 @@ Result<void> add_range(std::string_view text, double duration_s, std::vector<dou
 
 }  // namespace
 
-Result<std::vector<double>> parse_times(std::string_view text, double duration_s) {
+Result<std::vector<double>> parse_times(std::string_view text, double duration_s, const Calendar* calendar) {
+  const Span span{duration_s, calendar};
   std::vector<double> out;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     const std::string_view item = text.substr(begin, end - begin);
     if (item.empty()) return fail(ErrorKind::usage, "", "'" + std::string(text) + "' has an empty entry");
-    if (item.find(':') != std::string_view::npos) {
-      if (Result<void> added = add_range(item, duration_s, out); !added) return forward_error(added);
+    const std::vector<std::string_view> fields = fields_of(item);
+    if (fields.size() > 1) {
+      if (Result<void> added = add_range(item, fields, span, out); !added) return forward_error(added);
     } else {
-      Result<double> moment = parse_moment(item, duration_s);
+      Result<double> moment = parse_moment(item, span);
       if (!moment) return forward_error(moment);
       out.push_back(*moment);
     }

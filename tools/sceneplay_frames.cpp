@@ -16,6 +16,7 @@
 #include "render/strategy_names.h"
 #include "scene/gltf/read.h"
 #include "scene/limits.h"
+#include "timeline/calendar.h"
 #include "timeline/player.h"
 #include "tools/frame_times.h"
 #include "tools/output.h"
@@ -111,9 +112,12 @@ Result<CameraMan> CameraMan::make(const FramesRequest& request, const Scene& sce
   return man;
 }
 
-Result<std::vector<double>> moments(const FramesRequest& request, const Options& options, double duration_s) {
+Result<std::vector<double>> moments(const FramesRequest& request, const Options& options,
+                                    const Scene& scene) {
+  const auto duration_s = static_cast<double>(scene.duration_s);
   if (options.given("--times")) {
-    auto times = parse_times(request.times, duration_s);
+    const auto& calendar = scene.info.calendar;
+    auto times = parse_times(request.times, duration_s, calendar ? &*calendar : nullptr);
     if (!times) times.error().where = "--times";
     return times;
   }
@@ -202,8 +206,10 @@ ordered_json frame_json(const render::FrameReport& r, double seek_ms, double enc
 /// Plays the times through the renderer: while the device draws a frame, the one before is encoded.
 class Filming {
  public:
-  Filming(const FramesRequest& request, timeline::Player player, CameraMan camera, render::Renderer renderer)
+  Filming(const FramesRequest& request, timeline::Player player, CameraMan camera, render::Renderer renderer,
+          std::optional<Calendar> calendar)
       : request_(request),
+        calendar_(std::move(calendar)),
         player_(std::move(player)),
         camera_(std::move(camera)),
         renderer_(std::move(renderer)) {}
@@ -264,11 +270,13 @@ class Filming {
     if (!encoded) return forward_error(encoded);
     bytes_ += encoded->bytes;
     frames_.push_back(frame_json(job.report, job.seek_ms, encoded->encode_ms));
+    if (calendar_) frames_.back()["date"] = timeline::date_at(*calendar_, job.report.time_s);
     progress.advance();
     return {};
   }
 
   const FramesRequest& request_;
+  std::optional<Calendar> calendar_;  ///< the file's: frames then have a date
   timeline::Player player_;
   CameraMan camera_;
   render::Renderer renderer_;
@@ -318,7 +326,7 @@ Result<void> draw(const FramesRequest& request, const Options& options) {
   auto read = gltf::read(request.file, {});
   if (!read) return forward_error(read);
   const Scene& scene = read->scene;
-  auto times = moments(request, options, static_cast<double>(scene.duration_s));
+  auto times = moments(request, options, scene);
   if (!times) return forward_error(times);
   auto camera = CameraMan::make(request, scene);
   if (!camera) return forward_error(camera);
@@ -334,9 +342,10 @@ Result<void> draw(const FramesRequest& request, const Options& options) {
   };
   warn(*renderer);
   const std::uint64_t objects = scene.objects.size();
+  std::optional<Calendar> calendar = std::move(read->scene.info.calendar);
   *read = {};  // the renderer and the player hold what they need
   const double load_s = watch.seconds();
-  Filming filming(request, std::move(player), std::move(*camera), std::move(*renderer));
+  Filming filming(request, std::move(player), std::move(*camera), std::move(*renderer), std::move(calendar));
   if (auto done = filming.run(*times); !done) return done;
   warn(filming.renderer());  // what came up on the way
   const std::vector<std::string> messages = filming.renderer().take_validation_messages();
@@ -372,9 +381,13 @@ void add_options(Options& options, FramesRequest& r) {
   options.flag("--depth", r.depth, "also depth_00000.pfm: metres along the view direction; inf: background");
   options.add("--report", text_value(r.report, "FILE"), "counts and stage times of every frame as JSON");
   options.group("Time");
-  options.add("--times",
-              text_value(r.times, "LIST", "seconds, percentages, FROM:TO:STEP; separated by commas"),
-              "moments to draw", Role::run, "25%,50%,75%,100%");
+  options.add(
+      "--times",
+      text_value(r.times, "LIST",
+                 "seconds, percentages, dates (2024-03-15, 2024-03-15T12:00), FROM:TO:STEP; separated "
+                 "by commas"),
+      "moments to draw; dates, and steps such as 7d, need a file with a calendar (scenegen schedule)",
+      Role::run, "25%,50%,75%,100%");
   options.add("--fps", real_value(r.fps, 0.001, 10000, "N"), "film: pictures a second");
   options.add("--duration", real_value(r.length_s, 0.001, 1e6, "S"),
               "film: seconds that the whole timeline takes", Role::run, "the timeline's own length");

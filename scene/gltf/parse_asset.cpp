@@ -1,4 +1,7 @@
 // asset, and what our own files say in asset.extras.scenegen (docs/FORMAT.md 1).
+#include <algorithm>
+#include <chrono>
+
 #include "scene/gltf/parse.h"
 #include "scene/limits.h"
 
@@ -53,6 +56,60 @@ void parse_appearance(Value value, const Place& at, AppearanceInfo& out) {
   });
 }
 
+/// "2024-03-01" or "2024-03-01T08:00:00", and a day that there is.
+bool is_civil_time(std::string_view text) {
+  constexpr std::string_view kForm = "dddd-dd-ddTdd:dd:dd";
+  if (text.size() != 10 && text.size() != kForm.size()) return false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool digit = text[i] >= '0' && text[i] <= '9';
+    if (kForm[i] == 'd' ? !digit : text[i] != kForm[i]) return false;
+  }
+  const auto number = [&](std::size_t at, std::size_t count) {
+    unsigned out = 0;
+    for (const char c : text.substr(at, count)) out = out * 10 + static_cast<unsigned>(c - '0');
+    return out;
+  };
+  const std::chrono::year_month_day day{std::chrono::year(static_cast<int>(number(0, 4))),
+                                        std::chrono::month(number(5, 2)), std::chrono::day(number(8, 2))};
+  const bool clock = text.size() == 10 || (number(11, 2) < 24 && number(14, 2) < 60 && number(17, 2) < 60);
+  return number(0, 4) >= 1 && day.ok() && clock;
+}
+
+void parse_calendar_task(Value value, const Place& at, CalendarTask& out) {
+  each_field(value, at, [&](std::string_view key, Value& v, const Place& p) {
+    if (key == "id") {
+      out.id = get_string(v, p);
+    } else if (key == "name") {
+      out.name = get_string(v, p);
+    } else if (key == "type") {
+      out.type = get_string(v, p);
+    } else if (key == "start") {
+      out.start_s = get_double(v, p);
+    } else if (key == "finish") {
+      out.finish_s = get_double(v, p);
+    }
+  });
+  if (!(out.start_s >= 0 && out.finish_s >= out.start_s))
+    reject(at, "must start at 0 or later, and not finish before");
+}
+
+void parse_calendar(Value value, const Place& at, Calendar& out) {
+  out.seconds_per_day = 0;
+  each_field(value, at, [&](std::string_view key, Value& v, const Place& p) {
+    if (key == "start") {
+      out.start = get_string(v, p);
+      if (!is_civil_time(out.start)) reject(p, "wanted a date YYYY-MM-DD or YYYY-MM-DDTHH:MM:SS");
+    } else if (key == "secondsPerDay") {
+      out.seconds_per_day = get_double(v, p);
+    } else if (key == "tasks") {
+      each_element(v, p,
+                   [&](Value& w, const Place& q) { parse_calendar_task(w, q, out.tasks.emplace_back()); });
+    }
+  });
+  if (out.start.empty()) reject(at.key("start"), "missing");
+  if (!(out.seconds_per_day > 0)) reject(at.key("secondsPerDay"), "must be above 0");
+}
+
 void parse_ours(Value value, const Place& at, Document& out) {
   out.ours = true;
   each_field(value, at, [&](std::string_view key, Value& v, const Place& p) {
@@ -76,6 +133,8 @@ void parse_ours(Value value, const Place& at, Document& out) {
       });
     } else if (key == "appearance") {
       parse_appearance(v, p, out.info.appearance.emplace());
+    } else if (key == "calendar") {
+      parse_calendar(v, p, out.info.calendar.emplace());
     }
   });
 }

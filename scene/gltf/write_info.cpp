@@ -1,5 +1,7 @@
 #include "scene/gltf/write_info.h"
 
+#include "scene/gltf/write_calendar.h"
+
 namespace scenegen::gltf {
 
 namespace {
@@ -73,6 +75,7 @@ void emit_scenegen(const Scene& scene, const FileInfo& file, TextOut& out) {
   out.number(scene.duration_s);
   out.raw("}");
   if (info.appearance) emit_appearance(*info.appearance, out);
+  if (info.calendar) emit_calendar(*info.calendar, out);
   out.raw("}");
 }
 

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "scene/gltf/write.h"
@@ -59,6 +60,45 @@ TEST_CASE("times: seconds, percentages, ranges") {
   CHECK(film_times(10, 0.4, 8).value() == std::vector<double>{0, 2, 4, 6, 8});
   CHECK(film_times(1, 0.1, 8).value() == std::vector<double>{8});
   CHECK_FALSE(film_times(10000, 1e6, 8));
+}
+
+TEST_CASE("moments are dates too where the file has a calendar") {
+  scenegen::Calendar calendar;
+  calendar.start = "2024-03-01";
+  calendar.seconds_per_day = 0.5;
+  const double end_s = 10;  // 2024-03-21
+  const auto times = [&](const char* text) {
+    const auto parsed = parse_times(text, end_s, &calendar);
+    if (!parsed) FAIL(parsed.error().str());
+    return *parsed;
+  };
+  using Times = std::vector<double>;
+  CHECK(times("2024-03-01") == Times{0});
+  CHECK(times("2024-03-03T12:00,2024-03-21,50%,1.5") == Times{1.25, 10, 5, 1.5});
+  CHECK(times("2024-03-02T12:00:00") == Times{0.75});
+  CHECK(times("2024-03-01:2024-03-21:7d") == Times{0, 3.5, 7});
+  CHECK(times("2024-03-01T12:00:2024-03-02T12:00:6h") == Times{0.25, 0.375, 0.5, 0.625, 0.75});
+  CHECK(times("2024-03-11:100%:2.5") == Times{5, 7.5, 10});
+  const std::map<const char*, const char*> wrong{
+      {"2024-03-22", "'2024-03-22' is after the end of the timeline, 2024-03-21 (10 s)"},
+      {"2024-02-29", "'2024-02-29' is before the timeline begins, 2024-03-01"},
+      {"2024-02-30", "'2024-02-30': February 2024 has 29 days"},
+      {"2024-03-0x", "'2024-03-0x': wanted a date YYYY-MM-DD, with a time YYYY-MM-DDTHH:MM"},
+      {"2024-03-01:2024-03-21", "'2024-03-01:2024-03-21' is no FROM:TO:STEP"},
+      {"2024-03-21:2024-03-01:1d", "'2024-03-21:2024-03-01:1d' ends before it begins"},
+      {"2024-03-01:2024-03-21:0d", "the step of '2024-03-01:2024-03-21:0d' must be above 0"},
+      {"0:5:1y",
+       "'1y': wanted a duration: a number of days, or with a unit w, d, h or min (5, 2w, 8h, PT8H)"}};
+  for (const auto& [text, line] : wrong) {
+    const auto parsed = parse_times(text, end_s, &calendar);
+    REQUIRE_FALSE(parsed);
+    CHECK(parsed.error().kind == scenegen::ErrorKind::usage);
+    CHECK(parsed.error().str() == line);
+  }
+  CHECK(parse_times("2024-03-01", 8).error().str() ==
+        "'2024-03-01': the file has no calendar (scenegen schedule makes files that have)");
+  CHECK(parse_times("0:5:1d", 8).error().str() ==
+        "'1d': the file has no calendar (scenegen schedule makes files that have)");
 }
 
 TEST_CASE("frames: files, names, report and the line at the end") {
