@@ -14,8 +14,11 @@ struct Verb {
   std::string_view name;
   int (*run)(std::span<const std::string>);
 };
-constexpr std::array<Verb, 4> kVerbs{
-    {{"animate", animate_verb}, {"inspect", inspect_verb}, {"diff", diff_verb}, {"optimize", optimize_verb}}};
+constexpr std::array<Verb, 5> kVerbs{{{"animate", animate_verb},
+                                     {"schedule", schedule_verb},
+                                     {"inspect", inspect_verb},
+                                     {"diff", diff_verb},
+                                     {"optimize", optimize_verb}}};
 
 int run(std::span<const std::string> arguments) {
   if (arguments.empty()) {

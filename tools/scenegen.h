@@ -9,6 +9,7 @@ namespace scenegen::tools {
 
 int generate_verb(std::span<const std::string> arguments);
 int animate_verb(std::span<const std::string> arguments);
+int schedule_verb(std::span<const std::string> arguments);
 int inspect_verb(std::span<const std::string> arguments);
 int diff_verb(std::span<const std::string> arguments);
 int optimize_verb(std::span<const std::string> arguments);

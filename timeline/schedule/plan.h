@@ -66,6 +66,9 @@ struct PlanOptions {
 [[nodiscard]] Result<Plan> parse_plan(std::string_view bytes, const std::string& name,
                                       const PlanOptions& options = {});
 
+/// "2024-03-01", or "2024-03-01T08:00:00" when it is not midnight.
+[[nodiscard]] std::string moment_text(CivilSeconds at_s);
+
 /// "construct" and the like, and what IFC (IfcTaskTypeEnum), Navisworks and people call the same: in any
 /// case, with or without blanks, dashes and underscores. The error names the nearest; its `where` is empty.
 [[nodiscard]] Result<Profile> parse_task_type(std::string_view text);

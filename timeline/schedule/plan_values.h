@@ -17,9 +17,6 @@ struct Moment {
 /// "03/13/2024" where only one order is a date or `order` says which; "1-Mar-2024". Years 1 to 9999. A zone
 /// "Z" is let be, others are refused.
 [[nodiscard]] Result<Moment> parse_moment(std::string_view text, DateOrder order);
-/// "2024-03-01", or "2024-03-01T08:00:00" when it is not midnight.
-[[nodiscard]] std::string moment_text(CivilSeconds at_s);
-
 /// "5" (days), "5d", "2w", "8h", "30min", "P5D", "PT8H0M0S"; not negative, at most 100 years. Days have 24
 /// hours and weeks 7 days.
 [[nodiscard]] Result<CivilSeconds> parse_duration(std::string_view text);

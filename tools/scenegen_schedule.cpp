@@ -1,0 +1,369 @@
+// scenegen schedule MODEL PLAN -o OUT: a model and a Gantt plan -> the model's own document, built by the
+// plan.
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <thread>
+
+#include "scene/gltf/patch.h"
+#include "scene/gltf/restructure.h"
+#include "scene/import/import.h"
+#include "scene/limits.h"
+#include "scene/transform.h"
+#include "timeline/calendar.h"
+#include "timeline/schedule/mapping.h"
+#include "timeline/statistics.h"
+#include "tools/scenegen.h"
+#include "tools/schedule_options.h"
+
+namespace scenegen::tools {
+
+namespace {
+
+using nlohmann::ordered_json;
+using timeline::Mapping;
+using timeline::Plan;
+using timeline::Profile;
+using timeline::Task;
+
+/// What was made, or would be.
+struct Scheduled {
+  Plan plan;
+  Mapping mapping;
+  std::string saved_mapping;  ///< text of --save-mapping
+  Calendar calendar;
+  NameTable names;  ///< of the objects
+  std::uint64_t moments = 0;
+  float duration_s = 0;
+  gltf::WriteReport file;
+  std::vector<std::string> notes;
+  double seconds = 0;
+};
+
+// ---- The way of the data
+
+/// The model with every object in a node of its own.
+Result<gltf::ReadResult> read_objects(const ScheduleRequest& r, Scheduled& out) {
+  auto read = import::read_model(r.model, r.import);
+  if (!read) return read;
+  for (const gltf::Ignored& left_out : read->ignored) {
+    if (left_out.where == r.model)  // by the import; what a glTF holds beyond a scene stays in its document
+      out.notes.push_back("not imported: " + human_count(left_out.count) + " x " + left_out.what);
+  }
+  if (read->scene.objects.size() == 0)
+    return fail(ErrorKind::bad_input, r.model, "has no objects: no node that is drawn has a mesh");
+  if (!gltf::needs_restructuring(*read, gltf::Split::none)) return read;
+  auto again = gltf::restructure(std::move(*read), gltf::Split::none);
+  if (!again) return forward_error(again);
+  out.notes.insert(out.notes.end(), again->notes.begin(), again->notes.end());
+  return std::move(again->read);
+}
+
+/// "3 objects without a task: 'a', 'b', 'c'"
+template <class Items, class NameOf>
+std::string listed(std::string what, const Items& items, const NameOf& name_of) {
+  constexpr std::size_t kMost = 5;
+  what = human_count(items.size()) + " " + what + ": ";
+  for (std::size_t i = 0; i < std::min(items.size(), kMost); ++i)
+    what += (i == 0 ? "'" : ", '") + std::string(name_of(items[i])) + "'";
+  return what + (items.size() > kMost ? ", ..." : "");
+}
+
+std::string plural(std::size_t count, const std::string& one) {
+  return count == 1 ? one : one + "s";
+}
+
+Result<void> map(const ScheduleRequest& r, gltf::ReadResult& read, Scheduled& out) {
+  auto facts = ObjectFacts::make(read.scene, *read.source);
+  if (!facts) return forward_error(facts);
+  timeline::MappingOptions options;
+  options.summary_tasks = r.summary_tasks;
+  options.task_key = r.task_key;
+  std::optional<timeline::SavedMapping> saved;
+  if (!r.mapping.empty()) {
+    auto loaded = timeline::read_mapping(r.mapping);
+    if (!loaded) return forward_error(loaded);
+    saved = std::move(*loaded);
+    options.saved = &*saved;
+  }
+  auto mapping = timeline::map_tasks(out.plan, read.scene, *facts, options);
+  if (!mapping) return forward_error(mapping);
+  out.mapping = std::move(*mapping);
+  const auto& objects = out.mapping.objects_of_task;
+  if (std::all_of(objects.begin(), objects.end(), [](const auto& list) { return list.empty(); })) {
+    return fail(ErrorKind::bad_input, r.plan,
+                "no task is about an object of the model (say which in columns 'objects' or 'selector'); the "
+                "model has " +
+                    listed(plural(out.names.size(), "object"), out.mapping.objects_without_tasks,
+                           [&](ObjectId id) { return out.names[id.value]; }));
+  }
+  if (!r.save_mapping.empty())
+    out.saved_mapping = timeline::write_mapping(out.plan, out.mapping, read.scene, *facts);
+  return {};
+}
+
+Result<void> settle_unmatched(const ScheduleRequest& r, Scene& scene, const Mapping& mapping) {
+  const std::vector<ObjectId>& rest = mapping.objects_without_tasks;
+  if (rest.empty() || r.unmatched == Unmatched::show) return {};
+  if (r.unmatched == Unmatched::error) {
+    return fail(
+        ErrorKind::bad_input, r.model,
+        listed(plural(rest.size(), "object") + " without a task (--unmatched show or hide lets them be)",
+               rest, [&](ObjectId id) { return scene.objects.names[id.value]; }));
+  }
+  const float never[] = {0.0F};
+  const TrackId track = scene.add_track(Property::visibility, Interpolation::step, never, never);
+  for (const ObjectId id : rest) scene.objects.visibility[id.value] = track;
+  return {};
+}
+
+/// Says which tasks an object has that apply_profiles() finds contradictory: it knows no tasks.
+Error with_tasks(Error error, const Scene& scene, const Plan& plan, const Mapping& mapping) {
+  for (const Mapping::Shared& shared : mapping.claimed_twice) {
+    if (error.where != "object '" + std::string(scene.objects.names[shared.object.value]) + "'") continue;
+    error.what += "; its tasks:";
+    for (const std::uint32_t task : shared.tasks)
+      error.what += " '" + plan.tasks[task].id + "' (" + plan.tasks[task].where + ")";
+  }
+  error.kind = ErrorKind::bad_input;
+  return error;
+}
+
+timeline::ActivityOptions activity_options(const ScheduleRequest& r) {
+  timeline::ActivityOptions out = r.activities;
+  out.move_offset_m = y_up_from_z_up(glm::vec3(r.profile.move_z_up_m));
+  out.summary_tasks = r.summary_tasks;
+  out.threads =
+      r.threads != 0 ? r.threads : std::clamp(std::thread::hardware_concurrency(), 1U, limits::kMaxThreads);
+  return out;
+}
+
+Result<Scheduled> schedule(const ScheduleRequest& r, const std::vector<std::string>& arguments) {
+  const Stopwatch stopwatch;
+  Scheduled out;
+  Progress progress("", 0, r.quiet);
+  auto plan = timeline::read_plan(r.plan, r.plan_options);  // first: it is small, and wrong more often
+  if (!plan) return forward_error(plan);
+  out.plan = std::move(*plan);
+  progress.stage("reading " + r.model);
+  auto read = read_objects(r, out);
+  if (!read) return forward_error(read);
+  Scene& scene = read->scene;
+  out.names = scene.objects.names;
+  progress.stage("mapping " + human_count(out.plan.tasks.size()) + " tasks to " +
+                 human_count(scene.objects.size()) + " objects");
+  if (auto mapped = map(r, *read, out); !mapped) return forward_error(mapped);
+  timeline::Schedule times = timeline::make_activities(out.plan, out.mapping, scene, activity_options(r));
+  auto profiled = timeline::apply_profiles(scene, times.activities, r.profile.options);
+  if (!profiled)
+    return tl::unexpected<Error>(with_tasks(std::move(profiled.error()), scene, out.plan, out.mapping));
+  if (auto settled = settle_unmatched(r, scene, out.mapping); !settled) return forward_error(settled);
+  scene.duration_s = std::max(scene.duration_s, static_cast<float>(times.end_s + r.hold_s));
+  scene.info.arguments = arguments;
+  scene.info.seed.reset();
+  scene.info.appearance.reset();
+  scene.info.calendar = times.calendar;
+  out.calendar = std::move(times.calendar);
+  out.duration_s = scene.duration_s;
+  if (r.dry_run || r.format != Format::table || !r.report.empty())
+    out.moments = timeline::statistics(scene, 1).moments;
+  if (!r.dry_run) {
+    progress.stage("writing " + r.output);
+    gltf::PatchOptions options;
+    options.visibility = r.visibility;
+    options.material_copy_of = profiled->copy_of;
+    auto file = gltf::patch(*read->source, scene, r.output, options);
+    if (!file) return forward_error(file);
+    out.file = std::move(*file);
+    out.notes.insert(out.notes.end(), out.file.notes.begin(), out.file.notes.end());
+  }
+  if (!r.save_mapping.empty()) {
+    if (auto written = write_file(r.save_mapping, out.saved_mapping); !written) return forward_error(written);
+  }
+  out.seconds = stopwatch.seconds();
+  return out;
+}
+
+// ---- What is said
+
+std::uint64_t scheduled_objects(const Scheduled& made) {
+  return made.names.size() - made.mapping.objects_without_tasks.size();
+}
+
+std::string first_date(const Scheduled& made) {
+  return made.calendar.start.substr(0, 10);
+}
+
+std::string last_date(const Scheduled& made) {
+  double end_s = 0;
+  for (const CalendarTask& task : made.calendar.tasks) end_s = std::max(end_s, task.finish_s);
+  return timeline::date_at(made.calendar, end_s).substr(0, 10);
+}
+
+/// "house.glb  5.1 MB  83 of 83 objects  12 tasks  2024-03-01 to 2024-05-24  84 s  0.21 s"
+std::string finished_line(const ScheduleRequest& r, const Scheduled& made) {
+  const std::string output = r.output == "-" ? "stdout" : r.output;
+  return (r.dry_run ? "(not written)" : output + "  " + human_bytes(made.file.bytes)) + "  " +
+         human_count(scheduled_objects(made)) + " of " + human_count(made.names.size()) + " objects  " +
+         human_count(made.calendar.tasks.size()) + " " + plural(made.calendar.tasks.size(), "task") + "  " +
+         first_date(made) + " to " + last_date(made) + "  timeline " +
+         human_real(static_cast<double>(made.duration_s), 2) + " s  made in " + human_seconds(made.seconds) +
+         "\n";
+}
+
+std::vector<std::string> all_notes(const Scheduled& made) {
+  std::vector<std::string> out = made.notes;
+  const Mapping& m = made.mapping;
+  out.insert(out.end(), made.plan.notes.begin(), made.plan.notes.end());
+  constexpr std::size_t kMostMisses = 10;
+  const std::size_t misses = std::min(m.notes.size(), kMostMisses);
+  out.insert(out.end(), m.notes.begin(), m.notes.begin() + static_cast<std::ptrdiff_t>(misses));
+  if (misses < m.notes.size()) {
+    out.push_back("... and " + human_count(m.notes.size() - misses) +
+                  " more of that kind (--report lists them)");
+  }
+  if (!m.tasks_without_objects.empty()) {
+    out.push_back(listed(plural(m.tasks_without_objects.size(), "task") + " without objects",
+                         m.tasks_without_objects, [&](std::uint32_t i) { return made.plan.tasks[i].name; }));
+  }
+  if (!m.objects_without_tasks.empty()) {
+    out.push_back(listed(plural(m.objects_without_tasks.size(), "object") + " without a task",
+                         m.objects_without_tasks, [&](ObjectId id) { return made.names[id.value]; }));
+  }
+  std::vector<ObjectId> lost;
+  for (const Mapping::Shared& shared : m.claimed_twice) {
+    if (!shared.losers.empty()) lost.push_back(shared.object);
+  }
+  if (!lost.empty()) {
+    out.push_back(listed(plural(lost.size(), "object") + " claimed twice, of which the surer rule counts",
+                         lost, [&](ObjectId id) { return made.names[id.value]; }));
+  }
+  return out;
+}
+
+ordered_json ids_of(const Plan& plan, const std::vector<std::uint32_t>& tasks) {
+  ordered_json out = ordered_json::array();
+  for (const std::uint32_t task : tasks) out.push_back(plan.tasks[task].id);
+  return out;
+}
+
+ordered_json tasks_json(const Scheduled& made) {
+  ordered_json out = ordered_json::array();
+  for (std::size_t i = 0; i < made.plan.tasks.size(); ++i) {
+    const Task& task = made.plan.tasks[i];
+    const auto& rule = made.mapping.rule_of_task[i];
+    ordered_json names = ordered_json::array();
+    for (const ObjectId id : made.mapping.objects_of_task[i]) names.push_back(made.names[id.value]);
+    out.push_back({{"id", task.id},
+                   {"name", task.name},
+                   {"type", timeline::name(task.profile)},
+                   {"summary", task.summary},
+                   {"start", timeline::moment_text(*task.start_s)},
+                   {"finish", timeline::moment_text(*task.finish_s)},
+                   {"rule", rule ? ordered_json(timeline::name(*rule)) : ordered_json()},
+                   {"objects", std::move(names)}});
+  }
+  return out;
+}
+
+Report report(const ScheduleRequest& r, const Scheduled& made, const std::vector<std::string>& arguments) {
+  Report out("scenegen/schedule", 1);
+  const auto add = [&out](std::string key, ordered_json value) {
+    out.add({std::move(key), {}, std::move(value), {}});
+  };
+  add("model", r.model);
+  add("plan", r.plan);
+  add("output", r.output);
+  add("written", !r.dry_run);
+  add("objects", made.names.size());
+  add("scheduled", scheduled_objects(made));
+  add("calendar/start", made.calendar.start);
+  add("calendar/secondsPerDay", made.calendar.seconds_per_day);
+  add("durationS", static_cast<double>(made.duration_s));
+  add("moments", made.moments);
+  if (!r.dry_run) {
+    add("bytes", made.file.bytes);
+    add("nodes", made.file.nodes);
+    add("channels", made.file.channels);
+  }
+  add("tasks", tasks_json(made));
+  add("tasksWithoutObjects", ids_of(made.plan, made.mapping.tasks_without_objects));
+  ordered_json rest = ordered_json::array(), shared = ordered_json::array();
+  for (const ObjectId id : made.mapping.objects_without_tasks) rest.push_back(made.names[id.value]);
+  for (const Mapping::Shared& s : made.mapping.claimed_twice) {
+    shared.push_back({{"object", made.names[s.object.value]},
+                      {"tasks", ids_of(made.plan, s.tasks)},
+                      {"overruled", ids_of(made.plan, s.losers)}});
+  }
+  add("objectsWithoutTasks", std::move(rest));
+  add("objectsClaimedTwice", std::move(shared));
+  add("unmatchedEntries", made.mapping.notes);
+  add("arguments", arguments);
+  add("notes", made.notes);
+  add("seconds", made.seconds);
+  return out;
+}
+
+/// What --dry-run prints: which task is about how many objects, and how that was found.
+std::string mapping_table(const Scheduled& made, Format format) {
+  Table table({{"task", "task"},
+               {"name", "name"},
+               {"type", "type"},
+               {"start", "start"},
+               {"finish", "finish"},
+               {"objects", "objects"},
+               {"rule", "found by"}});
+  for (std::size_t i = 0; i < made.plan.tasks.size(); ++i) {
+    const Task& task = made.plan.tasks[i];
+    const auto& rule = made.mapping.rule_of_task[i];
+    table.row({task.id, task.name, task.summary ? std::string_view("summary") : timeline::name(task.profile),
+               timeline::moment_text(*task.start_s), timeline::moment_text(*task.finish_s),
+               made.mapping.objects_of_task[i].size(), rule ? timeline::name(*rule) : "-"});
+  }
+  return table.str(format);
+}
+
+Result<void> say(const ScheduleRequest& r, const Scheduled& made, const std::vector<std::string>& arguments) {
+  const Report facts = report(r, made, arguments);
+  if (!r.quiet) {
+    for (const std::string& note : all_notes(made))
+      (void)std::fprintf(stderr, "note: %s\n", printable(note).c_str());
+  }
+  if (!r.report.empty()) {
+    if (auto written = write_file(r.report, pretty(facts.json())); !written) return written;
+  }
+  if (r.format == Format::json) return write_stdout(facts.str(r.format));
+  if (r.format == Format::csv) return write_stdout(mapping_table(made, r.format));
+  if (r.quiet) return {};
+  const std::string text = (r.dry_run ? mapping_table(made, r.format) : "") + finished_line(r, made);
+  const bool stdout_taken = r.report == "-" || (r.output == "-" && !r.dry_run);
+  if (!stdout_taken) return write_stdout(text);
+  (void)std::fputs(text.c_str(), stderr);
+  return {};
+}
+
+}  // namespace
+
+int schedule_verb(std::span<const std::string> arguments) {
+  ScheduleRequest request;
+  Options options = schedule_options(request);
+  const Result<Action> action = options.parse(arguments);
+  if (!action) return report_error(action.error());
+  Result<void> done;
+  if (*action == Action::help) {
+    done = write_stdout(options.help(colored(1)));
+  } else if (*action == Action::version) {
+    done = write_stdout("scenegen " SCENEGEN_VERSION "\n");
+  } else if (done = check_schedule(request, options); done && request.dump_config) {
+    done = write_stdout(pretty(options.config(schedule_conflicts(request))));
+  } else if (done) {
+    const std::vector<std::string> canonical = options.canonical_arguments();
+    const auto made = schedule(request, canonical);
+    if (!made) return report_error(made.error());
+    done = say(request, *made, canonical);
+  }
+  return done ? 0 : report_error(done.error());
+}
+
+}  // namespace scenegen::tools
