@@ -15,10 +15,10 @@ struct Verb {
   int (*run)(std::span<const std::string>);
 };
 constexpr std::array<Verb, 5> kVerbs{{{"animate", animate_verb},
-                                     {"schedule", schedule_verb},
-                                     {"inspect", inspect_verb},
-                                     {"diff", diff_verb},
-                                     {"optimize", optimize_verb}}};
+                                      {"schedule", schedule_verb},
+                                      {"inspect", inspect_verb},
+                                      {"diff", diff_verb},
+                                      {"optimize", optimize_verb}}};
 
 int run(std::span<const std::string> arguments) {
   if (arguments.empty()) {

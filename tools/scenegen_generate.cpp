@@ -203,6 +203,8 @@ std::string generate_short_help() {
          "buildings\n"
          "  scenegen animate model.fbx -o model.glb                            give a static model a "
          "timeline\n"
+         "  scenegen schedule house.ifc plan.csv -o house.glb                  build a model by a Gantt "
+         "plan\n"
          "  scenegen inspect town.glb                                          what is in a file\n"
          "  scenegen diff a.glb b.glb                                          are two files the same "
          "scene?\n"

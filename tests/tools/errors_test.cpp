@@ -48,7 +48,7 @@ const Case kWrongCalls[] = {
     {"--zzzzzz", kUsage, "--zzzzzz: unknown option (--help lists them)"},
     {"-z", kUsage, "-z: unknown option (--help lists them)"},
     {"inspct a.glb", kUsage,
-     "unknown command 'inspct' (did you mean 'inspect'? one of: animate, inspect, diff, optimize)"},
+     "unknown command 'inspct' (did you mean 'inspect'? one of: animate, schedule, inspect, diff, optimize)"},
     {"--grid 2x2 stray", kUsage, "unexpected argument 'stray'"},
     {"--windows yes", kUsage, "--windows: unknown value 'yes' (one of: on, off)"},
     {"--layout node", kUsage,
