@@ -106,7 +106,7 @@ ChildLimits limits_for(std::uint64_t file_bytes) {
   constexpr std::uint64_t kMega = 1 << 20;
   ChildLimits out;
   out.memory_bytes = 1024 * kMega + 500 * file_bytes;
-  out.cpu_s = std::min<std::uint64_t>(20 + 20 * file_bytes / kMega, 7200);
+  out.cpu_s = std::min<std::uint64_t>(8 + 20 * file_bytes / kMega, 7200);
   out.output_bytes = limits::kMaxGlbBytes;
   return out;
 }
