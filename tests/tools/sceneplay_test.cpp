@@ -101,6 +101,25 @@ TEST_CASE("moments are dates too where the file has a calendar") {
         "'1d': the file has no calendar (scenegen schedule makes files that have)");
 }
 
+TEST_CASE("frames: dates of a file with a calendar, and without one") {
+  const TemporaryFolder folder;
+  scenegen::Scene scene = render::test::wall_scene();
+  scenegen::Calendar calendar;
+  calendar.start = "2024-03-01";
+  calendar.seconds_per_day = static_cast<double>(scene.duration_s) / 8;
+  scene.info.calendar = calendar;
+  const std::string file = folder.file("calendar.glb");
+  REQUIRE(gltf::write(scene, file, {}));
+  const std::string to = " -o " + folder.file("out") + " --size 32x32 --report " + folder.file("r.json");
+  REQUIRE(play("frames " + file + to + " --times 2024-03-01:2024-03-09:4d,2024-03-02T12:00").code == 0);
+  const auto report = nlohmann::json::parse(read_file(folder.file("r.json")));
+  REQUIRE(report["frames"].size() == 4);
+  CHECK(report["frames"][1]["date"] == "2024-03-05");
+  CHECK(report["frames"][3]["date"] == "2024-03-02T12:00:00");
+  check_error(play("frames " + wall_file(folder) + to + " --times 2024-03-01"), 2,
+              "--times: '2024-03-01': the file has no calendar (scenegen schedule makes files that have)");
+}
+
 TEST_CASE("frames: files, names, report and the line at the end") {
   const TemporaryFolder folder;
   const std::string file = wall_file(folder);

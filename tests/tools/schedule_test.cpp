@@ -128,6 +128,46 @@ TEST_CASE("schedule: what the plan says is what plays, date by date") {
   CHECK(report["unmatchedEntries"].size() == 1);
 }
 
+TEST_CASE("schedule: what is built, moved and demolished is where and as it should be") {
+  Workplace w;
+  w.plan(
+      "id,start,finish,type,objects,offset\n"
+      "1,2024-03-01,2024-03-02,construct,crane,\n"
+      "2,2024-03-05,2024-03-06,move,crane,0 3 1\n"
+      "3,2024-03-09,2024-03-10,demolish,crane,\n");
+  const ProcessResult result = w.call("model.gltf plan.csv -o out.glb");
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  const auto read = gltf::read(w.folder().file("out.glb"));
+  REQUIRE(read);
+  const Scene& scene = read->scene;
+  timeline::Player player(timeline::compile(scene));
+  ObjectId crane;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    if (scene.objects.names[i] == "crane") crane = ObjectId(i);
+  }
+  REQUIRE(crane.valid());
+  const auto place = [&](const char* date) {
+    (void)player.seek(*timeline::time_of_date(*scene.info.calendar, date));
+    return glm::vec3(player.world_from_object(crane)[3]);
+  };
+  const std::map<const char*, std::string> looks{{"2024-03-02", "green"},
+                                                 {"2024-03-04", "own"},
+                                                 {"2024-03-08", "own"},
+                                                 {"2024-03-10", "red"},
+                                                 {"2024-03-11", "-"}};
+  for (const auto& [date, wanted] : looks) {
+    INFO(date);
+    CHECK(look(scene, player, "crane", date) == wanted);
+  }
+  CHECK(place("2024-03-04") == glm::vec3(5, 0, 0));
+  const glm::vec3 half = place("2024-03-06");
+  CHECK(half.y > 0.2F);
+  CHECK(half.y < 0.8F);
+  CHECK(place("2024-03-08") == glm::vec3(5, 1, -3));  // y of the plan is away from the viewer, z is up
+  CHECK(place("2024-03-10") == glm::vec3(5, 1, -3));
+}
+
 TEST_CASE("schedule: objects without a task are shown, hidden or an error") {
   Workplace w;
   w.plan("id,start,finish,objects\n1,2024-03-01,2024-03-03,subtree=floor\n");
