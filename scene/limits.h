@@ -15,6 +15,8 @@ constexpr std::uint32_t kMaxCellsPerAxis = 1024;
 constexpr std::uint64_t kMaxSeed = (1ULL << 53) - 1;
 // Files: a .glb's length field is 32 bits.
 constexpr std::uint64_t kMaxGlbBytes = 0xFFFFFFFFULL;
+// Vertices of one mesh of layout merged: indices have 32 bits, of which glTF keeps the last.
+constexpr std::uint64_t kMaxMergedVertices = 0xFFFFFFFFULL;
 constexpr std::uint64_t kMaxJsonBytes = 0xFFFFFFFFULL;  // simdjson's own limit
 // Node hierarchies deeper than this are refused: readers of other people recurse.
 constexpr std::uint32_t kMaxNodeDepth = 512;

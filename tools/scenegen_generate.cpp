@@ -121,8 +121,8 @@ std::string finished_line(const GenerateRequest& r, const Made& made) {
             human_real(made.appearance->locality_cells, 1);
   }
   line += "  seed " + std::to_string(r.seed) + "  " + human_seconds(made.seconds) + "\n";
-  if (made.file.layout == gltf::Layout::instances) {
-    line += "instances: " + human_count(made.file.instance_groups) + " groups, " +
+  if (made.file.instance_groups > 0) {
+    line += layout_name(made.file.layout) + ": " + human_count(made.file.instance_groups) + " groups, " +
             human_real(objects_per_group(made), 1) + " objects per group, " +
             human_count(made.file.single_object_groups) + " objects alone\n";
   }
@@ -159,7 +159,7 @@ Report report(const GenerateRequest& r, const Made& made, const std::vector<std:
   add("samplers", made.file.samplers);
   add("accessors", made.file.accessors);
   add("draws", made.file.draws);
-  if (made.file.layout == gltf::Layout::instances) {
+  if (made.file.layout == gltf::Layout::instances || made.file.layout == gltf::Layout::merged) {
     add("groups", made.file.instance_groups);
     add("objectsPerGroup", objects_per_group(made));
     add("singleObjectGroups", made.file.single_object_groups);

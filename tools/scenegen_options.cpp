@@ -16,7 +16,8 @@ const std::vector<std::pair<std::string, gltf::Layout>>& layouts() {
   static const std::vector<std::pair<std::string, gltf::Layout>> list{{"auto", gltf::Layout::automatic},
                                                                       {"nodes", gltf::Layout::nodes},
                                                                       {"groups", gltf::Layout::groups},
-                                                                      {"instances", gltf::Layout::instances}};
+                                                                      {"instances", gltf::Layout::instances},
+                                                                      {"merged", gltf::Layout::merged}};
   return list;
 }
 
@@ -184,7 +185,8 @@ void add_visibility_option(Options& options, gltf::VisibilityEncoding& visibilit
 void add_file_options(Options& options, gltf::WriteOptions& file) {
   options.add("--layout", choice_value<gltf::Layout>(file.layout, layouts(), "LAYOUT"),
               "how objects become glTF nodes (docs/FORMAT.md); auto: instances from " +
-                  std::to_string(gltf::kInstancesFrom) + " objects on, else nodes",
+                  std::to_string(gltf::kInstancesFrom) +
+                  " objects on, else nodes; merged: large, but core glTF, and few nodes",
               Role::content);
   add_visibility_option(options, file.visibility);
 }

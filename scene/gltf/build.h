@@ -10,6 +10,11 @@
 
 namespace scenegen::gltf::reading {
 
+/// Layout merged: checks what the file says of the objects that its meshes were merged from. If it holds, the
+/// merged meshes are forgotten and their nodes stand for those objects; else (other tools keep extras but
+/// renumber what they point at) it is the plain glTF that others see, and that is noted.
+void settle_merged(Document& document, Data& data);
+
 /// Geometries, meshes (MeshId = index in the file; one more for nodes that draw nothing is never made).
 void build_meshes(Document& document, Data& data, Scene& scene);
 /// KHR_draco_mesh_compression: the streams of `primitive` that the compressed data hold.

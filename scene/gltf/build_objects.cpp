@@ -45,16 +45,30 @@ class ObjectBuilder {
     const NodeDetail* const d = detail(node);
     return d != nullptr && d->instanced;
   }
+  [[nodiscard]] bool merged(std::uint32_t node) const {
+    const NodeDetail* const d = detail(node);
+    return d != nullptr && d->set_count > 0;
+  }
   /// A node of ours that shows one look of objects in a group; look 0 is the one that says what they are.
   [[nodiscard]] bool shows_group_look(std::uint32_t node) const {
     const NodeDetail* const d = detail(node);
     if (!document_.ours || d == nullptr || d->look == kNone || (flags_[node] & kLook) != 0) return false;
-    const bool indexed = d->instanced ? d->object_id != kNone : d->object != kNone;
+    if (d->set_count > 0) return true;
+    const bool indexed = d->instanced ? d->instances.object_id != kNone : d->object != kNone;
     return document_.nodes[node].mesh != kNone && indexed && (d->look > 0 || d->mesh != kNone);
   }
   [[nodiscard]] bool is_object(std::uint32_t node) const {
     return (flags_[node] & (kLook | kFurtherLook)) == 0 &&
-           (document_.nodes[node].mesh != kNone || has_looks(node));
+           (document_.nodes[node].mesh != kNone || has_looks(node) || merged(node));
+  }
+  /// Objects::mesh of what a node stands for.
+  [[nodiscard]] std::uint32_t mesh_of(std::uint32_t node) const {
+    const std::uint32_t mesh = document_.nodes[node].mesh;
+    return mesh != kNone && !shows_group_look(node) ? mesh : detail(node)->mesh;
+  }
+  /// What a node that shows a look of a group shows.
+  [[nodiscard]] std::uint32_t look_of(std::uint32_t node) const {
+    return merged(node) ? detail(node)->shows : document_.nodes[node].mesh;
   }
   [[nodiscard]] Place node_place(std::uint32_t node) const { return nodes_.at(node); }
 
@@ -67,14 +81,20 @@ class ObjectBuilder {
   /// was another node's mesh comes in that one's place.
   template <class F>
   void each_object_node(const F& f);
-  std::uint64_t instance_count(std::uint32_t node);
   void load_ids();
-  std::vector<std::uint32_t> instance_ids(const NodeDetail& d, std::uint64_t count, const Place& at);
+  std::vector<std::uint32_t> instance_ids(const Instances& d, std::uint64_t count, const Place& at);
+  template <class Use>
+  void for_each_set(std::uint32_t node, const Use& use);
+  std::uint64_t instance_count(const Instances& d, const Place& at);
   std::uint64_t count_objects();
   void add_objects(std::uint64_t count);
   void add_objects_of(std::uint32_t node);
   void add_instances(std::uint32_t node);
-  void put(std::uint64_t id, std::uint32_t node, std::uint32_t instance, const Transform& transform);
+  void add_set(std::uint32_t node, const Instances& d, const Place& at, std::uint32_t& instance);
+  struct Origin {
+    std::uint32_t node, instance;
+  };
+  void put(std::uint64_t id, const Origin& origin, const Transform& transform, std::uint32_t mesh);
   std::uint64_t next_id(std::uint32_t given, const Place& at);
   void add_looks(std::uint32_t node, ObjectId object);
   void add_look_node(std::uint64_t object, std::uint32_t node);
@@ -190,12 +210,23 @@ void ObjectBuilder::place_nodes() {
   }
 }
 
-std::uint64_t ObjectBuilder::instance_count(std::uint32_t node) {
+/// use(instances, place of their attributes) for what an instancing or merged node holds.
+template <class Use>
+void ObjectBuilder::for_each_set(std::uint32_t node, const Use& use) {
   const NodeDetail& d = *detail(node);
   const Place here = node_place(node);
-  const Place extensions = here.key("extensions");
-  const Place extension = extensions.key("EXT_mesh_gpu_instancing");
-  const Place at = extension.key("attributes");
+  if (d.set_count == 0) {
+    const Place extensions = here.key("extensions");
+    const Place extension = extensions.key("EXT_mesh_gpu_instancing");
+    return use(d.instances, extension.key("attributes"));
+  }
+  const Place extras = here.key("extras");
+  const Place ours = extras.key("scenegen");
+  const Place sets = ours.key("objects");
+  for (std::uint32_t k = 0; k < d.set_count; ++k) use(document_.instance_sets[d.first_set + k], sets.at(k));
+}
+
+std::uint64_t ObjectBuilder::instance_count(const Instances& d, const Place& at) {
   std::uint64_t count = 0;
   const auto same = [&](std::uint32_t accessor, std::string_view name) {
     if (accessor == kNone) return;
@@ -256,7 +287,7 @@ void ObjectBuilder::load_ids() {
 }
 
 /// Indices of a node's instances; empty where it has none.
-std::vector<std::uint32_t> ObjectBuilder::instance_ids(const NodeDetail& d, std::uint64_t count,
+std::vector<std::uint32_t> ObjectBuilder::instance_ids(const Instances& d, std::uint64_t count,
                                                        const Place& at) {
   if (!explicit_ids_) return {};
   if (d.object_id != kNone) return data_.integers(d.object_id, at.key("_OBJECT_ID"));
@@ -274,10 +305,12 @@ std::uint64_t ObjectBuilder::count_objects() {
   each_object_node([&](std::uint32_t node) {
     const NodeDetail* const d = detail(node);
     const bool many = instanced(node);
-    const bool has_id = d != nullptr && (d->object != kNone || (many && d->object_id != kNone) ||
-                                         (many && d->first_id != kNone));
+    const bool has_id = d != nullptr && (d->object != kNone || (many && d->instances.object_id != kNone) ||
+                                         (many && d->instances.first_id != kNone) || merged(node));
     if (ours_alone() && !ids_damaged_ && has_id) explicit_ids_ = true;
-    const std::uint64_t here = many ? instance_count(node) : 1;
+    std::uint64_t here = many ? 0 : 1;
+    if (many)
+      for_each_set(node, [&](const Instances& set, const Place& at) { here += instance_count(set, at); });
     if (here > limits::kMaxObjects - count) {
       reject(node_place(node), "more than " + std::to_string(limits::kMaxObjects) + " objects");
     }
@@ -298,31 +331,32 @@ std::uint64_t ObjectBuilder::next_id(std::uint32_t given, const Place& at) {
   return given;
 }
 
-void ObjectBuilder::put(std::uint64_t id, std::uint32_t node, std::uint32_t instance,
-                        const Transform& transform) {
-  const Node& n = document_.nodes[node];
+void ObjectBuilder::put(std::uint64_t id, const Origin& origin, const Transform& transform,
+                        std::uint32_t mesh) {
   scene_.objects.frame_from_object[id] = transform;
-  scene_.objects.frame[id] = frame_[node];
-  const bool group_look = shows_group_look(node);
-  scene_.objects.mesh[id] = MeshId(n.mesh != kNone && !group_look ? n.mesh : detail(node)->mesh);
-  if (group_look) add_look_node(id, node);
-  object_visibility_[id] = visible_[node];
-  origins_.node[id] = node;
-  if (!origins_.instance.empty()) origins_.instance[id] = instance;
+  scene_.objects.frame[id] = frame_[origin.node];
+  scene_.objects.mesh[id] = MeshId(mesh);
+  object_visibility_[id] = visible_[origin.node];
+  origins_.node[id] = origin.node;
+  if (!origins_.instance.empty()) origins_.instance[id] = origin.instance;
+  if (shows_group_look(origin.node)) add_look_node(id, origin.node);
 }
 
 void ObjectBuilder::add_instances(std::uint32_t node) {
-  const NodeDetail& d = *detail(node);
-  const Place here = node_place(node);
-  const Place extensions = here.key("extensions");
-  const Place extension = extensions.key("EXT_mesh_gpu_instancing");
-  const Place at = extension.key("attributes");
-  const std::uint64_t count = instance_count(node);
+  std::uint32_t instance = 0;
+  for_each_set(node, [&](const Instances& d, const Place& at) { add_set(node, d, at, instance); });
+}
+
+/// `instance`: the first one's number within the node; left at the next one's.
+void ObjectBuilder::add_set(std::uint32_t node, const Instances& d, const Place& at,
+                            std::uint32_t& instance) {
+  const std::uint64_t count = instance_count(d, at);
   std::vector<float> translation, rotation, scale;
   const std::vector<std::uint32_t> ids = instance_ids(d, count, at);
   if (d.translation != kNone) translation = data_.floats(d.translation, 3, at.key("TRANSLATION"));
   if (d.rotation != kNone) rotation = data_.floats(d.rotation, 4, at.key("ROTATION"));
   if (d.scale != kNone) scale = data_.floats(d.scale, 3, at.key("SCALE"));
+  const std::uint32_t mesh = d.mesh != kNone ? d.mesh : mesh_of(node);
   for (std::uint64_t i = 0; i < count; ++i) {
     Transform transform;
     if (!translation.empty())
@@ -333,7 +367,7 @@ void ObjectBuilder::add_instances(std::uint32_t node) {
       transform.rotation = unit_rotation({q[0], q[1], q[2], q[3]}, at.key("ROTATION"));
     }
     const std::uint64_t id = next_id(ids.empty() ? kNone : ids[i], at.key("_OBJECT_ID"));
-    put(id, node, static_cast<std::uint32_t>(i), transform);
+    put(id, {node, instance++}, transform, mesh);
   }
 }
 
@@ -357,11 +391,13 @@ void ObjectBuilder::add_objects_of(std::uint32_t node) {
   const Node& n = document_.nodes[node];
   const NodeDetail* const d = detail(node);
   const Place at = node_place(node);
-  check_index(n.mesh != kNone ? n.mesh : d->mesh, scene_.meshes.size(), "meshes", at.key("mesh"));
-  if (shows_group_look(node)) check_index(d->mesh, scene_.meshes.size(), "meshes", at.key("extras"));
+  if (!merged(node)) {  // those are checked (settle_merged)
+    check_index(n.mesh != kNone ? n.mesh : d->mesh, scene_.meshes.size(), "meshes", at.key("mesh"));
+    if (shows_group_look(node)) check_index(d->mesh, scene_.meshes.size(), "meshes", at.key("extras"));
+  }
   if (instanced(node)) return add_instances(node);
   const std::uint64_t id = next_id(d == nullptr ? kNone : d->object, at);
-  put(id, node, 0, (flags_[node] & kOwnFrame) != 0 ? Transform() : n.local);
+  put(id, {node, 0}, (flags_[node] & kOwnFrame) != 0 ? Transform() : n.local, mesh_of(node));
   if (has_looks(node)) add_looks(node, ObjectId(id));
 }
 
@@ -391,14 +427,16 @@ void ObjectBuilder::add_look_node(std::uint64_t object, std::uint32_t node) {
 void ObjectBuilder::add_further_look(std::uint32_t node) {
   const NodeDetail& d = *detail(node);
   const Place here = node_place(node);
-  check_index(document_.nodes[node].mesh, scene_.meshes.size(), "meshes", here.key("mesh"));
+  check_index(look_of(node), scene_.meshes.size(), "meshes", here.key("mesh"));
   if (!explicit_ids_) reject(here, "a look of an object, but no object has an index");
-  std::vector<std::uint32_t> ids{d.object};
-  if (instanced(node)) ids = instance_ids(d, instance_count(node), here);
-  for (const std::uint32_t id : ids) {
+  const auto add = [&](std::uint32_t id) {
     check_index(id, scene_.objects.size(), "objects", here);
     add_look_node(id, node);
-  }
+  };
+  if (!instanced(node)) return add(d.object);
+  for_each_set(node, [&](const Instances& set, const Place& at) {
+    for (const std::uint32_t id : instance_ids(set, instance_count(set, at), at)) add(id);
+  });
 }
 
 /// Visibility and mesh tracks of objects whose looks are nodes of groups.
@@ -424,7 +462,7 @@ void ObjectBuilder::resolve_looks() {
         reject(here, "object " + std::to_string(object) + " has " + std::to_string(nodes.size()) +
                          " looks, but none or two with number " + std::to_string(k));
       }
-      looks.push_back({visible_[nodes[k].node], document_.nodes[nodes[k].node].mesh});
+      looks.push_back({visible_[nodes[k].node], look_of(nodes[k].node)});
     }
     const std::uint32_t first = nodes.front().node;
     if (first != last_first || looks != last) {

@@ -63,16 +63,22 @@ struct ImageRecord {
 struct TextureRecord {
   std::uint32_t source = kNone, sampler = kNone;
 };
+/// Accessors of placed objects: of an instancing node, or of one set of objects in a merged one.
+struct Instances {
+  std::uint32_t translation = kNone, rotation = kNone, scale = kNone, object_id = kNone;
+  std::uint32_t mesh = kNone;      ///< kNone: the node's
+  std::uint32_t first_id = kNone;  ///< extras.scenegen.ids: into the scene's table of ids
+};
 /// What an optional JSON object says beside its mere presence; the common node has none of it.
 struct NodeDetail {
   glm::mat4 matrix{1.0F};
   bool has_matrix = false;
   bool instanced = false;
-  std::uint32_t translation = kNone, rotation = kNone, scale = kNone,
-                object_id = kNone;                                          ///< accessors of the instances
+  Instances instances;                         ///< EXT_mesh_gpu_instancing
+  std::uint32_t first_set = 0, set_count = 0;  ///< extras.scenegen.objects: into Document::instance_sets
+  std::uint32_t shows = kNone;                 ///< extras.scenegen: the mesh of a merged look
   std::uint32_t object = kNone, look = kNone, mesh = kNone, frame = kNone;  ///< extras.scenegen
   std::uint32_t visibility = kNone, looks = kNone;  ///< extras.scenegen: into the scene's timelines
-  std::uint32_t first_id = kNone;                   ///< extras.scenegen.ids: into the scene's table of ids
   std::uint32_t stands_for = kNone;  ///< the node in whose place among the objects this one comes
   std::string_view name;             ///< its name: of the object, not of the node
 };
@@ -106,6 +112,7 @@ struct Timeline {
 struct SceneExtras {
   NameList names, ids;
   std::uint32_t first_timeline = 0, timeline_count = 0;
+  std::uint32_t merged_after = kNone;  ///< layout merged: meshes from this one on are merged ones
 };
 
 enum class Path : std::uint8_t { none, translation, rotation, scale, visibility, base_color, emissive };
@@ -152,6 +159,7 @@ struct Document {
   std::vector<Camera> cameras;
   std::vector<Node> nodes;
   std::vector<NodeDetail> node_details;
+  std::vector<Instances> instance_sets;
   std::vector<std::uint32_t> children;
   std::vector<SceneRecord> scenes;
   std::vector<std::uint32_t> scene_roots;

@@ -14,7 +14,8 @@ void each_attribute(Value value, const Place& at, Document* report, F&& f) {
     for (std::size_t i = 0; i < kAttributes; ++i) {
       if (kAttributeNames[i] == key) return f(i, get_index(v, p));
     }
-    if (report != nullptr) report->ignored.add(p, "vertex attribute " + printable(key));
+    const bool ours = key == "_OBJECT_ID";  // of layout merged
+    if (report != nullptr && !ours) report->ignored.add(p, "vertex attribute " + printable(key));
   });
 }
 

@@ -12,24 +12,38 @@ NodeDetail& detail_of(Node& node, Document& out) {
   return out.node_details[node.detail];
 }
 
+void parse_attributes(Value value, const Place& at, Instances& instances, Document& out) {
+  each_field(value, at, [&](std::string_view name, Value& v, const Place& p) {
+    if (name == "TRANSLATION") {
+      instances.translation = get_index(v, p);
+    } else if (name == "ROTATION") {
+      instances.rotation = get_index(v, p);
+    } else if (name == "SCALE") {
+      instances.scale = get_index(v, p);
+    } else if (name == "_OBJECT_ID") {
+      instances.object_id = get_index(v, p);
+    } else if (name == "mesh") {
+      instances.mesh = get_index(v, p);
+    } else {
+      out.ignored.add(p, "instance attribute " + printable(name));
+    }
+  });
+}
+
 void parse_instancing(Value value, const Place& at, NodeDetail& detail, Document& out) {
   detail.instanced = true;
   each_field(value, at, [&](std::string_view key, Value& v, const Place& p) {
-    if (key != "attributes") return;
-    each_field(v, p, [&](std::string_view name, Value& w, const Place& q) {
-      if (name == "TRANSLATION") {
-        detail.translation = get_index(w, q);
-      } else if (name == "ROTATION") {
-        detail.rotation = get_index(w, q);
-      } else if (name == "SCALE") {
-        detail.scale = get_index(w, q);
-      } else if (name == "_OBJECT_ID") {
-        detail.object_id = get_index(w, q);
-      } else {
-        out.ignored.add(q, "instance attribute " + printable(name));
-      }
-    });
+    if (key == "attributes") parse_attributes(v, p, detail.instances, out);
   });
+  detail.instances.mesh = kNone;
+}
+
+void parse_sets(Value value, const Place& at, NodeDetail& detail, Document& out) {
+  detail.first_set = static_cast<std::uint32_t>(out.instance_sets.size());
+  each_element(value, at, [&](Value& element, const Place& place) {
+    parse_attributes(element, place, out.instance_sets.emplace_back(), out);
+  });
+  detail.set_count = static_cast<std::uint32_t>(out.instance_sets.size()) - detail.first_set;
 }
 
 void parse_node_extensions(Value value, const Place& at, Node& node, Document& out) {
@@ -68,11 +82,15 @@ void parse_node_extras(Value value, const Place& at, Node& node, Document& out) 
       } else if (key == "looks") {
         detail.looks = get_index(w, q);
       } else if (key == "ids") {
-        detail.first_id = get_index(w, q);
+        detail.instances.first_id = get_index(w, q);
       } else if (key == "standsFor") {
         detail.stands_for = get_index(w, q);
       } else if (key == "name") {
         detail.name = out.unescaped.emplace_back(get_string(w, q));
+      } else if (key == "shows") {
+        detail.shows = get_index(w, q);
+      } else if (key == "objects") {
+        parse_sets(w, q, detail, out);
       }
     });
   });

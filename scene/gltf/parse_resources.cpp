@@ -262,6 +262,10 @@ void parse_scene_extras(Value value, const Place& at, SceneExtras& extras, Docum
       parse_table(v, p, "front-coded-utf8", extras.names);
     } else if (key == "ids") {
       parse_table(v, p, "delta-leb128", extras.ids);
+    } else if (key == "merged") {
+      each_field(v, p, [&](std::string_view inner, Value& w, const Place& q) {
+        if (inner == "meshes") extras.merged_after = get_index(w, q);
+      });
     } else if (key == "timelines") {
       extras.first_timeline = static_cast<std::uint32_t>(out.timelines.size());
       each_element(v, p, [&](Value& w, const Place& q) { parse_timeline(w, q, out); });

@@ -16,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const DracoStreams kNoStreams;  // the plan refers to it
+const MergePlan kNoMerge;
 
 constexpr std::uint64_t align4(std::uint64_t n) {
   return (n + 3) & ~std::uint64_t{3};
@@ -74,7 +75,7 @@ class BufferPlanner {
   BufferPatch plan(const NodePatch& nodes, const Scene& tracks) {
     out_.uri_of_buffer.resize(document_.buffers.size());
     out_.uri_of_image.resize(document_.images.size());
-    out_.animation = plan_buffer(tracks, NodePlan(tracks), nodes.animation, kNoStreams);
+    out_.animation = plan_buffer(tracks, NodePlan(tracks), nodes.animation, kNoStreams, kNoMerge);
     first_buffer();
     other_buffers();
     place_animation();

@@ -47,6 +47,7 @@ ReadResult read_block(const Block& file, const std::string& name, const std::str
   out.json_bytes = container.json.size();
 
   build_materials(document, data, folder, out.scene);
+  settle_merged(document, data);
   build_meshes(document, data, out.scene);
   const Hierarchy hierarchy = build_hierarchy(document);
   VisibilityTable visibility((1ULL << 20) + input_bytes);

@@ -17,6 +17,7 @@ enum class Layout : std::uint8_t {
   nodes,      ///< a node and a channel per object
   groups,     ///< a node per object under one animated parent per (frame, visibility track, mesh track)
   instances,  ///< per (frame, visibility track, mesh track, mesh) one EXT_mesh_gpu_instancing node a look
+  merged,     ///< per (frame, visibility track, mesh track) the geometry of all objects as one mesh a look
 };
 enum class VisibilityEncoding : std::uint8_t { scale, pointer, both };
 
@@ -52,7 +53,7 @@ struct WriteReport {
   std::uint64_t nodes = 0, channels = 0, samplers = 0, accessors = 0;
   std::uint64_t draws = 0;                 ///< primitives of the meshes of all nodes
   Layout layout = Layout::nodes;           ///< the one used
-  std::uint64_t instance_groups = 0;       ///< layout instances: objects that share an instancing node a look
+  std::uint64_t instance_groups = 0;       ///< layouts instances, merged: objects that share a node a look
   std::uint64_t instanced_objects = 0;     ///< in them; divided by them: objects per group
   std::uint64_t single_object_groups = 0;  ///< beside them: objects alone, with nodes of their own
   std::uint64_t draco_geometries = 0, draco_bytes = 0;  ///< compressed, and into how many bytes

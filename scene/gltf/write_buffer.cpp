@@ -1,5 +1,6 @@
 #include "scene/gltf/write_buffer.h"
 
+#include <bit>
 #include <cassert>
 
 namespace scenegen::gltf {
@@ -70,13 +71,13 @@ void plan_animation(const FileTracks& tracks, const AnimationPlan& animation, Bu
 }
 
 void plan_instances(const Scene& scene, const NodePlan& nodes, BufferPlan& plan) {
-  if (nodes.layout != Layout::instances) return;
+  if (!nodes.compact()) return;
   plan.instances = number_instance_accessors(scene, nodes, plan.accessor_count);
-  for (std::size_t g = 0; g < nodes.groups.size(); ++g) {
-    const std::uint64_t count = nodes.groups[g].count;
+  for (std::size_t s = 0; s < nodes.sets.size(); ++s) {
+    const std::uint64_t count = nodes.sets[s].count;
     plan[ViewKind::translations].bytes += count * 12;
-    if (plan.instances[g].own_rotation) plan[ViewKind::rotations].bytes += count * 16;
-    if (plan.instances[g].own_scale) plan[ViewKind::scales].bytes += count * 12;
+    if (plan.instances[s].own_rotation) plan[ViewKind::rotations].bytes += count * 16;
+    if (plan.instances[s].own_scale) plan[ViewKind::scales].bytes += count * 12;
     if (!nodes.id_table) plan[ViewKind::object_ids].bytes += count * 4;
   }
   if (nodes.id_table) {
@@ -89,7 +90,42 @@ void plan_instances(const Scene& scene, const NodePlan& nodes, BufferPlan& plan)
   plan[ViewKind::names].bytes = counter.total();
 }
 
+struct MergedStream {
+  VertexStream stream;
+  ViewKind view;
+  std::uint32_t bytes;  ///< of an element
+  int component_type;
+  std::string_view type;
+};
+constexpr int kUnsignedByte = 5121, kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
+constexpr MergedStream kMergedStreams[] = {
+    {VertexStream::position, ViewKind::positions, 12, kFloat, "VEC3"},
+    {VertexStream::normal, ViewKind::normals, 12, kFloat, "VEC3"},
+    {VertexStream::tangent, ViewKind::tangents, 16, kFloat, "VEC4"},
+    {VertexStream::texcoord_0, ViewKind::texcoords_0, 8, kFloat, "VEC2"},
+    {VertexStream::texcoord_1, ViewKind::texcoords_1, 8, kFloat, "VEC2"},
+    {VertexStream::color, ViewKind::colors, 16, kFloat, "VEC4"},
+    {VertexStream::object_id, ViewKind::vertex_ids, 4, kUnsignedShort, "VEC2"},
+};
+
+void plan_merged(const MergePlan& merge, BufferPlan& plan) {
+  plan.first_merged = plan.accessor_count;
+  plan.merge = &merge;
+  for (const MergedPrimitive& primitive : merge.primitives) {
+    plan.accessor_count += merged_accessors(primitive);
+    for (const MergedStream& s : kMergedStreams) {
+      if (primitive.has(s.stream)) plan[s.view].bytes += primitive.vertices * s.bytes;
+    }
+    const bool narrow = fits_16_bits(primitive.vertices);
+    plan[narrow ? ViewKind::indices_16 : ViewKind::indices_32].bytes += primitive.indices * (narrow ? 2 : 4);
+  }
+}
+
 }  // namespace
+
+std::uint32_t merged_accessors(const MergedPrimitive& primitive) {
+  return static_cast<std::uint32_t>(std::popcount(primitive.streams)) + (primitive.indexed ? 1U : 0U);
+}
 
 std::uint32_t BufferPlan::accessor_of(const AnimationSampler& sampler) const {
   switch (sampler.kind) {
@@ -119,12 +155,13 @@ std::uint64_t plain_bytes(const Geometry& geometry) {
 }
 
 BufferPlan plan_buffer(const Scene& scene, const NodePlan& nodes, const AnimationPlan& animation,
-                       const DracoStreams& draco) {
+                       const DracoStreams& draco, const MergePlan& merge) {
   BufferPlan plan;
   plan.streams = &draco;
   plan_geometries(scene, plan);
   plan_animation(nodes.tracks, animation, plan);
   plan_instances(scene, nodes, plan);
+  plan_merged(merge, plan);
   for (const DracoStream& stream : draco.of_geometry) plan.draco.push_back({0, stream.bytes.size(), 0});
   for (const Image& image : scene.images) plan.images.push_back({0, image.bytes.size(), 0});
 
@@ -196,8 +233,6 @@ class AccessorText {
   std::uint32_t count_ = 0;
 };
 
-constexpr int kUnsignedByte = 5121, kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
-
 void emit_box(const Box& box, TextOut& out) {
   out.raw(R"(,"min":)");
   out.numbers(box.lo);
@@ -244,6 +279,20 @@ void emit_geometry_accessors(const Geometry& geometry, AccessorText& accessors) 
   } else {
     accessors.add(ViewKind::indices_32, kUnsignedInt, indices, "SCALAR", indices * 4);
   }
+}
+
+void emit_merged_accessors(const MergedPrimitive& primitive, AccessorText& accessors) {
+  const std::uint64_t n = primitive.vertices;
+  for (const MergedStream& s : kMergedStreams) {
+    if (!primitive.has(s.stream)) continue;
+    TextOut& out = accessors.open(s.view, s.component_type, n, s.type, n * s.bytes);
+    if (s.stream == VertexStream::position) emit_box(primitive.box, out);
+    accessors.close();
+  }
+  if (!primitive.indexed) return;
+  const bool narrow = fits_16_bits(n);
+  accessors.add(narrow ? ViewKind::indices_16 : ViewKind::indices_32, narrow ? kUnsignedShort : kUnsignedInt,
+                primitive.indices, "SCALAR", primitive.indices * (narrow ? 2 : 4));
 }
 
 void emit_animation_accessors(const FileTracks& tracks, const AnimationPlan& animation,
@@ -321,14 +370,13 @@ void write_visibility_bytes(const FileTracks& tracks, const AnimationPlan& anima
 /// collected.
 void write_instances(const Scene& scene, const NodePlan& nodes, const BufferPlan& plan, ViewKind kind,
                      ByteSink& sink) {
-  if (nodes.layout != Layout::instances) return;
   if (kind == ViewKind::object_ids && nodes.id_table) return write_id_table(nodes, sink);
-  for (std::size_t g = 0; g < nodes.groups.size(); ++g) {
-    const Group& group = nodes.groups[g];
-    if ((kind == ViewKind::rotations && !plan.instances[g].own_rotation) ||
-        (kind == ViewKind::scales && !plan.instances[g].own_scale))
+  for (std::size_t s = 0; s < nodes.sets.size(); ++s) {
+    const InstanceSet& set = nodes.sets[s];
+    if ((kind == ViewKind::rotations && !plan.instances[s].own_rotation) ||
+        (kind == ViewKind::scales && !plan.instances[s].own_scale))
       continue;
-    for (std::uint32_t k = group.first; k < group.first + group.count; ++k) {
+    for (std::uint32_t k = set.first; k < set.first + set.count; ++k) {
       const std::uint32_t object = nodes.grouped[k];
       const Transform& transform = scene.objects.frame_from_object[object];
       const glm::quat& r = transform.rotation;
@@ -357,6 +405,18 @@ void write_geometries(const Scene& scene, const BufferPlan& plan, ViewKind kind,
   }
 }
 
+void write_merged(const Scene& scene, const MergePlan& merge, ViewKind kind, ByteSink& sink) {
+  for (const MergedPrimitive& primitive : merge.primitives) {
+    if (sink.failed()) return;
+    for (const MergedStream& s : kMergedStreams) {
+      if (s.view == kind) write_merged_stream(scene, merge, primitive, s.stream, sink);
+    }
+    const bool narrow = fits_16_bits(primitive.vertices);
+    if (kind == (narrow ? ViewKind::indices_16 : ViewKind::indices_32))
+      write_merged_indices(scene, merge, primitive, narrow, sink);
+  }
+}
+
 }  // namespace
 
 void emit_accessors(const Scene& scene, const NodePlan& nodes, const AnimationPlan& animation,
@@ -372,15 +432,14 @@ void emit_accessors(const Scene& scene, const NodePlan& nodes, const AnimationPl
     }
   }
   emit_animation_accessors(nodes.tracks, animation, accessors);
-  if (nodes.layout == Layout::instances) {
-    for (std::size_t g = 0; g < nodes.groups.size(); ++g) {
-      const std::uint64_t n = nodes.groups[g].count;
-      accessors.add(ViewKind::translations, kFloat, n, "VEC3", n * 12);
-      if (plan.instances[g].own_rotation) accessors.add(ViewKind::rotations, kFloat, n, "VEC4", n * 16);
-      if (plan.instances[g].own_scale) accessors.add(ViewKind::scales, kFloat, n, "VEC3", n * 12);
-      if (!nodes.id_table) accessors.add(ViewKind::object_ids, kUnsignedInt, n, "SCALAR", n * 4);
-    }
+  for (std::size_t s = 0; s < nodes.sets.size(); ++s) {
+    const std::uint64_t n = nodes.sets[s].count;
+    accessors.add(ViewKind::translations, kFloat, n, "VEC3", n * 12);
+    if (plan.instances[s].own_rotation) accessors.add(ViewKind::rotations, kFloat, n, "VEC4", n * 16);
+    if (plan.instances[s].own_scale) accessors.add(ViewKind::scales, kFloat, n, "VEC3", n * 12);
+    if (!nodes.id_table) accessors.add(ViewKind::object_ids, kUnsignedInt, n, "SCALAR", n * 4);
   }
+  for (const MergedPrimitive& primitive : plan.merge->primitives) emit_merged_accessors(primitive, accessors);
   assert(accessors.count() == plan.accessor_count);
 }
 
@@ -411,6 +470,7 @@ void emit_buffer_views(const Scene& scene, const BufferPlan& plan, TextOut& out)
   view(plan[ViewKind::texcoords_0], sizeof(glm::vec2), kArrayBuffer);
   view(plan[ViewKind::texcoords_1], sizeof(glm::vec2), kArrayBuffer);
   view(plan[ViewKind::colors], sizeof(glm::vec4), kArrayBuffer);
+  view(plan[ViewKind::vertex_ids], sizeof(std::uint32_t), kArrayBuffer);
   view(plan[ViewKind::indices_16], 0, kElementArrayBuffer);
   view(plan[ViewKind::indices_32], 0, kElementArrayBuffer);
   for (std::size_t kind = static_cast<std::size_t>(ViewKind::times); kind < kViewKinds; ++kind)
@@ -429,7 +489,10 @@ void write_buffer(const Scene& scene, const NodePlan& nodes, const AnimationPlan
   for (std::size_t k = 0; k < kViewKinds && !sink.failed(); ++k) {
     const auto kind = static_cast<ViewKind>(k);
     assert(plan[kind].bytes == 0 || sink.total() - start == plan[kind].offset);
-    if (kind < ViewKind::times) write_geometries(scene, plan, kind, sink);
+    if (kind < ViewKind::times) {
+      write_geometries(scene, plan, kind, sink);
+      write_merged(scene, *plan.merge, kind, sink);
+    }
     if (kind == ViewKind::times) write_times(nodes.tracks, animation, sink);
     if (kind == ViewKind::values) write_values(nodes.tracks, animation, sink);
     if (kind == ViewKind::bytes) write_visibility_bytes(nodes.tracks, animation, sink);

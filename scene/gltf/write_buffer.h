@@ -7,6 +7,7 @@
 
 #include "scene/gltf/write_draco.h"
 #include "scene/gltf/write_instances.h"
+#include "scene/gltf/write_merge.h"
 #include "scene/gltf/write_plan.h"
 #include "scene/gltf/write_sink.h"
 #include "scene/gltf/write_text.h"
@@ -24,6 +25,7 @@ enum class ViewKind : std::uint8_t {
   texcoords_0,
   texcoords_1,
   colors,
+  vertex_ids,
   indices_16,
   indices_32,
   times,
@@ -35,7 +37,7 @@ enum class ViewKind : std::uint8_t {
   object_ids,
   names,
 };
-constexpr std::size_t kViewKinds = 16;
+constexpr std::size_t kViewKinds = 17;
 
 /// Accessors of a geometry; -1 where it has none (or where no mesh uses it).
 struct GeometryAccessors {
@@ -59,8 +61,9 @@ struct BufferPlan {
   const DracoStreams* streams = nullptr;
   std::vector<GeometryAccessors> geometries;
   std::uint32_t first_input = 0, first_byte_output = 0, first_scale_output = 0, first_value_output = 0,
-                accessor_count = 0;
-  std::vector<InstanceAccessors> instances;  ///< by group; empty but in layout instances
+                first_merged = 0, accessor_count = 0;
+  std::vector<InstanceAccessors> instances;  ///< by NodePlan::sets
+  const MergePlan* merge = nullptr;
 
   [[nodiscard]] const View& operator[](ViewKind kind) const { return views[static_cast<std::size_t>(kind)]; }
   [[nodiscard]] View& operator[](ViewKind kind) { return views[static_cast<std::size_t>(kind)]; }
@@ -72,9 +75,13 @@ struct BufferPlan {
 /// Bytes of a geometry's vertices and indices without compression.
 [[nodiscard]] std::uint64_t plain_bytes(const Geometry& geometry);
 
-/// `draco` must outlive the plan.
+/// Accessors of a merged primitive: one a stream, then the indices.
+[[nodiscard]] std::uint32_t merged_accessors(const MergedPrimitive& primitive);
+
+/// `draco` and `merge` must outlive the plan.
 [[nodiscard]] BufferPlan plan_buffer(const Scene& scene, const NodePlan& nodes,
-                                     const AnimationPlan& animation, const DracoStreams& draco);
+                                     const AnimationPlan& animation, const DracoStreams& draco,
+                                     const MergePlan& merge);
 
 /// The elements of /accessors and /bufferViews, without the brackets.
 void emit_accessors(const Scene& scene, const NodePlan& nodes, const AnimationPlan& animation,

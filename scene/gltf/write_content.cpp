@@ -199,6 +199,10 @@ Result<WriteReport> write_gltf(const FileContent& content, const std::string& pa
 
 }  // namespace
 
+Result<void> check_glb_buffer(const std::string& path, std::uint64_t bytes) {
+  return check_glb_size(path, 0, bytes);
+}
+
 Result<WriteReport> write_content(const FileContent& content, FileForm form, const std::string& path,
                                   const std::string& binary) {
   const BlockSigpipe no_signal;

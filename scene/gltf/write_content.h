@@ -31,6 +31,9 @@ enum class FileForm : std::uint8_t { glb, gltf };
 /// RFC 3986: everything but unreserved characters is percent-encoded; '/' stays.
 [[nodiscard]] std::string percent_encoded(std::string_view path);
 
+/// Whether a buffer of this size fits into a .glb at all.
+[[nodiscard]] Result<void> check_glb_buffer(const std::string& path, std::uint64_t bytes);
+
 /// `binary` is used by .gltf only.
 [[nodiscard]] Result<WriteReport> write_content(const FileContent& content, FileForm form,
                                                 const std::string& path, const std::string& binary);

@@ -15,6 +15,8 @@ std::string_view name_of(Layout layout) {
       return "groups";
     case Layout::instances:
       return "instances";
+    case Layout::merged:
+      return "merged";
     default:
       return "nodes";
   }
@@ -35,7 +37,8 @@ Document::Document(const Scene& scene, const WriteOptions& options)
       strengths_(emissive_strengths(scene)),
       channels_(plan_channels(scene, nodes_, strengths_)),
       draco_(encode_draco(scene, options.draco)),
-      buffer_(plan_buffer(scene, nodes_, channels_.animation, draco_)),
+      merge_(plan_merge(scene, nodes_)),
+      buffer_(plan_buffer(scene, nodes_, channels_.animation, draco_, merge_)),
       assets_(make_assets(scene, buffer_, strengths_)) {
   const auto any_sampler = [](const std::vector<std::uint32_t>& samplers) {
     return std::any_of(samplers.begin(), samplers.end(),
@@ -60,7 +63,7 @@ WriteReport Document::report() const {
   report.accessors = buffer_.accessor_count;
   report.draws = draws();
   report.layout = nodes_.layout;
-  if (nodes_.layout == Layout::instances) {
+  if (nodes_.compact()) {
     report.instance_groups = nodes_.groups.size();
     report.instanced_objects = nodes_.grouped.size();
     report.single_object_groups = nodes_.single_object_groups;
@@ -75,8 +78,9 @@ std::uint64_t Document::draws() const {
   const auto of_mesh = [&](MeshId mesh) {
     return std::uint64_t{scene_.meshes[mesh.value].primitives.size()};
   };
-  std::uint64_t count = 0;
+  std::uint64_t count = merge_.primitives.size();
   for (const GroupNode& node : nodes_.group_nodes) {
+    if (nodes_.layout == Layout::merged) break;
     const Group& group = nodes_.groups[node.group];
     if (nodes_.layout == Layout::instances) {
       count += of_mesh(node.look.valid() ? node.look : group.mesh);
@@ -107,6 +111,10 @@ void Document::report_draco(WriteReport& report) const {
     report.notes.push_back(
         "draco: " + std::to_string(draco_.unfit) +
         " of the geometries are no triangle lists that Draco gives back whole; left as they are");
+  if (!draco_.of_geometry.empty() && merge_.any()) {
+    report.draco_left += merge_.primitives.size();
+    report.notes.emplace_back("draco: merged meshes are left as they are");
+  }
 }
 
 void Document::emit_json(std::string_view buffer_uri, ByteSink& sink) const {
@@ -191,7 +199,7 @@ void Document::emit_scenes(TextOut& out) const {
 
 void Document::emit_scene_extras(TextOut& out) const {
   const bool has_names = buffer_[ViewKind::names].bytes > 0;
-  if (!has_names && nodes_.timelines.empty()) return;
+  if (!has_names && nodes_.timelines.empty() && !merge_.any()) return;
   out.raw(R"(,"extras":{"scenegen":{)");
   Commas members(out);
   if (has_names) {
@@ -209,6 +217,11 @@ void Document::emit_scene_extras(TextOut& out) const {
     out.raw(R"(,"encoding":"delta-leb128"})");
   }
   if (!nodes_.timelines.empty()) emit_timelines(members, out);
+  if (merge_.any()) {
+    members.next().raw(R"("merged":{"meshes":)");
+    out.number(scene_.meshes.size());
+    out.raw("}");
+  }
   out.raw("}}");
 }
 
@@ -274,11 +287,53 @@ void Document::emit_assets(TextOut& out) const {
     out.raw(key);
     out.tree(tree);
   };
-  member(R"(,"meshes":)", assets_.meshes);
+  if (!merge_.any()) member(R"(,"meshes":)", assets_.meshes);
+  if (merge_.any()) emit_merged_meshes(out);
   member(R"(,"materials":)", assets_.materials);
   member(R"(,"textures":)", assets_.textures);
   member(R"(,"samplers":)", assets_.samplers);
   member(R"(,"images":)", assets_.images);
+}
+
+/// The scene's own meshes, which no node uses, and behind them the merged ones.
+void Document::emit_merged_meshes(TextOut& out) const {
+  constexpr std::string_view kAttributes[] = {"POSITION",   "NORMAL",  "TANGENT",   "TEXCOORD_0",
+                                              "TEXCOORD_1", "COLOR_0", "_OBJECT_ID"};
+  if (assets_.meshes.empty() && merge_.primitives.empty()) return;
+  out.raw(R"(,"meshes":[)");
+  Commas meshes(out);
+  for (const nlohmann::json& mesh : assets_.meshes) meshes.next().tree(mesh);
+  std::uint32_t accessor = buffer_.first_merged;
+  for (std::size_t n = 0; n < nodes_.group_nodes.size() && !out.sink().failed(); ++n) {
+    if (!merge_.mesh_of_node[n].valid()) continue;
+    meshes.next().raw(R"({"name":)");
+    out.string(nodes_.names[n]);
+    out.raw(R"(,"primitives":[)");
+    Commas primitives(out);
+    for (std::uint32_t p = merge_.first_primitive[n]; p < merge_.first_primitive[n + 1]; ++p) {
+      const MergedPrimitive& primitive = merge_.primitives[p];
+      primitives.next().raw(R"({"attributes":{)");
+      Commas attributes(out);
+      for (std::size_t s = 0; s < std::size(kAttributes); ++s) {
+        if (!primitive.has(static_cast<VertexStream>(s))) continue;
+        attributes.next().string(kAttributes[s]);
+        out.raw(":");
+        out.number(accessor++);
+      }
+      out.raw("}");
+      const auto member = [&](std::string_view key, std::uint32_t value) {
+        out.raw(key);
+        out.number(value);
+      };
+      if (primitive.indexed) member(R"(,"indices":)", accessor++);
+      if (primitive.material.valid()) member(R"(,"material":)", primitive.material.value);
+      if (primitive.topology != Topology::triangles)
+        member(R"(,"mode":)", static_cast<std::uint32_t>(primitive.topology));
+      out.raw("}");
+    }
+    out.raw("]}");
+  }
+  out.raw("]");
 }
 
 }  // namespace scenegen::gltf

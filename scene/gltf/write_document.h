@@ -30,9 +30,11 @@ struct ChannelPlan {
 class Document : public FileContent {
  public:
   Document(const Scene& scene, const WriteOptions& options);
-  Document(const Document&) = delete;  // buffer_ points at draco_
+  Document(const Document&) = delete;  // buffer_ points at draco_ and merge_
   Document& operator=(const Document&) = delete;
 
+  /// Before the first emit_json(): what has to be computed from all vertices.
+  [[nodiscard]] Result<void> measure() { return merge_.measure(scene_); }
   void emit_json(std::string_view buffer_uri, ByteSink& sink) const override;
   [[nodiscard]] std::uint64_t buffer_bytes() const override { return buffer_.bytes; }
   void emit_buffer(ByteSink& sink) const override {
@@ -41,6 +43,7 @@ class Document : public FileContent {
   [[nodiscard]] WriteReport report() const override;
 
  private:
+  void emit_merged_meshes(TextOut& out) const;
   void report_draco(WriteReport& report) const;
   [[nodiscard]] std::uint64_t draws() const;
   void emit_asset(TextOut& out) const;
@@ -51,7 +54,11 @@ class Document : public FileContent {
   void emit_nodes(TextOut& out) const;
   void emit_object_nodes(Commas& commas, TextOut& out) const;
   void emit_group_nodes(Commas& commas, TextOut& out) const;
-  void emit_look_extras(const Group& group, std::uint32_t number, std::uint32_t object, TextOut& out) const;
+  void emit_attributes(std::uint32_t set, TextOut& out) const;
+  void emit_merged_node(std::size_t n, TextOut& out) const;
+  void emit_look_members(const Group& group, std::uint32_t number, MeshId mesh, TextOut& out) const;
+  void emit_look_of_object(const Group& group, std::uint32_t number, std::uint32_t object,
+                           TextOut& out) const;
   void emit_frame_nodes(Commas& commas, TextOut& out) const;
   void emit_inserted_nodes(Commas& commas, TextOut& out) const;
   void emit_animation(TextOut& out) const;
@@ -66,6 +73,7 @@ class Document : public FileContent {
   std::vector<float> strengths_;
   ChannelPlan channels_;
   DracoStreams draco_;
+  MergePlan merge_;
   BufferPlan buffer_;
   AssetTrees assets_;
 };

@@ -31,15 +31,15 @@ void sort_by_key(std::vector<std::uint32_t>& items, std::size_t keys, const Key&
 /// is none wraps to 0).
 void make_groups(const Scene& scene, const std::vector<TrackId>& looks, NodePlan& plan) {
   const Objects& objects = scene.objects;
+  const bool all = plan.compact();  // in layout groups what neither comes, goes nor changes needs no parent
   const bool by_mesh = plan.layout == Layout::instances;
   const auto looks_at = [&](std::uint32_t i) { return looks.empty() ? TrackId() : looks[i]; };
   plan.groups.clear();
   plan.grouped.clear();
   for (std::uint32_t i = 0; i < objects.size(); ++i) {
-    // In layout groups what neither comes nor goes nor changes needs no parent.
-    if (by_mesh || objects.visibility[i].valid() || looks_at(i).valid()) plan.grouped.push_back(i);
+    if (all || objects.visibility[i].valid() || looks_at(i).valid()) plan.grouped.push_back(i);
   }
-  if (by_mesh) sort_by_key(plan.grouped, scene.meshes.size(), [&](auto i) { return objects.mesh[i].value; });
+  if (all) sort_by_key(plan.grouped, scene.meshes.size(), [&](auto i) { return objects.mesh[i].value; });
   if (!looks.empty())
     sort_by_key(plan.grouped, scene.tracks.size() + 1, [&](auto i) { return looks[i].value + 1; });
   sort_by_key(plan.grouped, scene.tracks.size() + 1, [&](auto i) { return objects.visibility[i].value + 1; });
@@ -52,11 +52,7 @@ void make_groups(const Scene& scene, const std::vector<TrackId>& looks, NodePlan
                       plan.groups.back().track == objects.visibility[i] &&
                       plan.groups.back().looks == looks_at(i) && plan.groups.back().mesh == mesh;
     if (!same) plan.groups.push_back({objects.frame[i], objects.visibility[i], looks_at(i), mesh, k, 0});
-    Group& group = plan.groups.back();
-    ++group.count;
-    const Transform& transform = objects.frame_from_object[i];
-    group.rotated = group.rotated || transform.rotation != glm::quat(1.0F, 0.0F, 0.0F, 0.0F);
-    group.scaled = group.scaled || transform.scale != glm::vec3(1.0F);
+    ++plan.groups.back().count;
   }
 }
 
@@ -105,6 +101,24 @@ void find_singles(std::size_t objects, NodePlan& plan) {
 bool degenerate(const NodePlan& plan) {
   const std::size_t groups = plan.groups.size();
   return plan.single_object_groups * 2 > groups && groups * 2 > plan.grouped.size();
+}
+
+void make_sets(const Scene& scene, NodePlan& plan) {
+  const Objects& objects = scene.objects;
+  for (Group& group : plan.groups) {
+    group.first_set = static_cast<std::uint32_t>(plan.sets.size());
+    for (std::uint32_t k = group.first; k < group.first + group.count; ++k) {
+      const std::uint32_t i = plan.grouped[k];
+      if (k == group.first || plan.sets.back().mesh != objects.mesh[i])
+        plan.sets.push_back({objects.mesh[i], k, 0});
+      InstanceSet& set = plan.sets.back();
+      ++set.count;
+      const Transform& transform = objects.frame_from_object[i];
+      set.rotated = set.rotated || transform.rotation != glm::quat(1.0F, 0.0F, 0.0F, 0.0F);
+      set.scaled = set.scaled || transform.scale != glm::vec3(1.0F);
+    }
+    group.set_count = static_cast<std::uint32_t>(plan.sets.size()) - group.first_set;
+  }
 }
 
 std::uint32_t timeline_of(const Scene& scene, TrackId track, NodePlan& plan) {
@@ -181,6 +195,7 @@ void plan_groups(const Scene& scene, const WriteOptions& options, NodePlan& plan
       plan.layout = Layout::groups;
     }
   }
+  if (plan.layout == Layout::merged) make_groups(scene, looks, plan);
   if (plan.layout == Layout::groups) {
     make_groups(scene, looks, plan);
     if (!plan.scale())
@@ -188,8 +203,9 @@ void plan_groups(const Scene& scene, const WriteOptions& options, NodePlan& plan
           "groups with pointer visibility does not play in Babylon.js (it ignores it on nodes without a "
           "mesh)");
   }
-  dissolve_single_groups(plan);
+  if (plan.layout != Layout::merged) dissolve_single_groups(plan);
   if (plan.layout == Layout::instances) order_instances(scene, plan);
+  if (plan.compact()) make_sets(scene, plan);
   find_singles(scene.objects.size(), plan);
   make_group_nodes(scene, plan);
   // Looks of one object must find each other even when a tool has lost the table.

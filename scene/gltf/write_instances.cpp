@@ -9,37 +9,37 @@ namespace scenegen::gltf {
 
 namespace {
 
-/// Finds groups with equal values of one member of their objects' transforms; nothing is copied.
+/// Finds sets with equal values of one member of their objects' transforms; nothing is copied.
 template <class Member>
 class SharedValues {
  public:
   SharedValues(const Scene& scene, const NodePlan& nodes, Member Transform::*member)
       : scene_(scene), nodes_(nodes), member_(member) {}
 
-  /// The first group with the values of `group`: itself, if none before it has them.
-  std::uint32_t first_with(std::uint32_t group) {
-    std::vector<std::uint32_t>& candidates = known_[hash(nodes_.groups[group])];
+  /// The first set with the values of `set`: itself, if none before it has them.
+  std::uint32_t first_with(std::uint32_t set) {
+    std::vector<std::uint32_t>& candidates = known_[hash(nodes_.sets[set])];
     for (const std::uint32_t candidate : candidates) {
-      if (equal(nodes_.groups[candidate], nodes_.groups[group])) return candidate;
+      if (equal(nodes_.sets[candidate], nodes_.sets[set])) return candidate;
     }
-    candidates.push_back(group);
-    return group;
+    candidates.push_back(set);
+    return set;
   }
 
  private:
-  [[nodiscard]] const Member& value(const Group& group, std::uint32_t k) const {
-    return scene_.objects.frame_from_object[nodes_.grouped[group.first + k]].*member_;
+  [[nodiscard]] const Member& value(const InstanceSet& set, std::uint32_t k) const {
+    return scene_.objects.frame_from_object[nodes_.grouped[set.first + k]].*member_;
   }
-  [[nodiscard]] std::uint64_t hash(const Group& group) const {
+  [[nodiscard]] std::uint64_t hash(const InstanceSet& set) const {
     std::uint64_t hash = 0xCBF29CE484222325ULL;  // FNV-1a, by words
-    for (std::uint32_t k = 0; k < group.count; ++k) {
+    for (std::uint32_t k = 0; k < set.count; ++k) {
       std::uint32_t words[sizeof(Member) / 4];
-      std::memcpy(words, &value(group, k), sizeof words);
+      std::memcpy(words, &value(set, k), sizeof words);
       for (const std::uint32_t word : words) hash = (hash ^ word) * 0x100000001B3ULL;
     }
     return hash;
   }
-  [[nodiscard]] bool equal(const Group& a, const Group& b) const {
+  [[nodiscard]] bool equal(const InstanceSet& a, const InstanceSet& b) const {
     if (a.count != b.count) return false;
     for (std::uint32_t k = 0; k < a.count; ++k) {
       if (std::memcmp(&value(a, k), &value(b, k), sizeof(Member)) != 0) return false;
@@ -57,23 +57,23 @@ class SharedValues {
 
 std::vector<InstanceAccessors> number_instance_accessors(const Scene& scene, const NodePlan& nodes,
                                                          std::uint32_t& first) {
-  std::vector<InstanceAccessors> out(nodes.groups.size());
+  std::vector<InstanceAccessors> out(nodes.sets.size());
   SharedValues<glm::quat> rotations(scene, nodes, &Transform::rotation);
   SharedValues<glm::vec3> scales(scene, nodes, &Transform::scale);
-  for (std::uint32_t g = 0; g < out.size(); ++g) {
-    const Group& group = nodes.groups[g];
-    out[g].translation = first++;
-    if (group.rotated) {
-      const std::uint32_t other = rotations.first_with(g);
-      out[g].own_rotation = other == g;
-      out[g].rotation = other == g ? first++ : out[other].rotation;
+  for (std::uint32_t s = 0; s < out.size(); ++s) {
+    const InstanceSet& set = nodes.sets[s];
+    out[s].translation = first++;
+    if (set.rotated) {
+      const std::uint32_t other = rotations.first_with(s);
+      out[s].own_rotation = other == s;
+      out[s].rotation = other == s ? first++ : out[other].rotation;
     }
-    if (group.scaled) {
-      const std::uint32_t other = scales.first_with(g);
-      out[g].own_scale = other == g;
-      out[g].scale = other == g ? first++ : out[other].scale;
+    if (set.scaled) {
+      const std::uint32_t other = scales.first_with(s);
+      out[s].own_scale = other == s;
+      out[s].scale = other == s ? first++ : out[other].scale;
     }
-    if (!nodes.id_table) out[g].object_id = first++;
+    if (!nodes.id_table) out[s].object_id = first++;
   }
   return out;
 }

@@ -1,4 +1,4 @@
-// Accessors of the placements of instancing nodes.
+// Accessors of the placements of objects in instancing and merged nodes.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,15 @@
 
 namespace scenegen::gltf {
 
-/// Of one group: TRANSLATION, ROTATION if rotated, SCALE if scaled, _OBJECT_ID but with an id table. Groups
-/// whose instances have equal rotations (scales), in the order of the group, share one accessor.
+/// Of one set: TRANSLATION, ROTATION if rotated, SCALE if scaled, _OBJECT_ID but with an id table. Sets
+/// whose instances have equal rotations (scales), in the order of the set, share one accessor.
 struct InstanceAccessors {
   std::uint32_t translation = 0, rotation = 0, scale = 0, object_id = 0;
-  bool own_rotation = false;  ///< the first group that has it: its data are written
+  bool own_rotation = false;  ///< the first set that has it: its data are written
   bool own_scale = false;
 };
 
-/// Numbered from `first` on: group by group, in the order of the members. Puts the number behind the last
+/// Numbered from `first` on: set by set, in the order of the members. Puts the number behind the last
 /// into `first`.
 [[nodiscard]] std::vector<InstanceAccessors> number_instance_accessors(const Scene& scene,
                                                                        const NodePlan& nodes,

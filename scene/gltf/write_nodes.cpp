@@ -8,8 +8,6 @@ namespace scenegen::gltf {
 
 namespace {
 
-constexpr std::uint32_t kNoObject = ObjectId::kNone;
-
 void emit_name(std::string_view name, TextOut& out) {
   out.raw(R"({"name":)");
   out.string(name);
@@ -32,7 +30,7 @@ void Document::emit_nodes(TextOut& out) const {
   if (nodes_.node_count == 0) return;
   out.raw(R"(,"nodes":[)");
   Commas commas(out);
-  if (nodes_.layout == Layout::instances) emit_group_nodes(commas, out);
+  if (nodes_.compact()) emit_group_nodes(commas, out);
   emit_object_nodes(commas, out);
   if (nodes_.layout == Layout::groups) emit_group_nodes(commas, out);
   emit_frame_nodes(commas, out);
@@ -42,8 +40,7 @@ void Document::emit_nodes(TextOut& out) const {
 
 void Document::emit_object_nodes(Commas& commas, TextOut& out) const {
   const Objects& objects = scene_.objects;
-  const bool instances = nodes_.layout == Layout::instances;
-  const bool indexed = instances || !nodes_.timelines.empty();
+  const bool indexed = nodes_.compact() || !nodes_.timelines.empty();
   auto look = nodes_.looks.begin();     // both lists are by object, as the loop is
   auto single = nodes_.single.begin();  // layout groups: the others are in groups
   auto wrapped = nodes_.wrapped.begin();
@@ -84,7 +81,7 @@ void Document::emit_object_nodes(Commas& commas, TextOut& out) const {
       out.raw(kNodeVisibility);
     }
     if (look_group != nullptr) {
-      emit_look_extras(*look_group, 0, i, out);
+      emit_look_of_object(*look_group, 0, i, out);
     } else if (indexed || has_looks) {
       out.raw(R"(,"extras":{"scenegen":{)");
       Commas members(out);
@@ -102,21 +99,27 @@ void Document::emit_object_nodes(Commas& commas, TextOut& out) const {
   }
 }
 
-/// ,"extras":{"scenegen":{…}} of look `number` of a group, or of the one object of it that the node is.
-void Document::emit_look_extras(const Group& group, std::uint32_t number, std::uint32_t object,
-                                TextOut& out) const {
-  out.raw(R"(,"extras":{"scenegen":{)");
+/// What extras.scenegen says of look `number` of a group; `mesh` (if valid) is the Objects::mesh of what the
+/// node stands for.
+void Document::emit_look_members(const Group& group, std::uint32_t number, MeshId mesh, TextOut& out) const {
   const auto member = [&](std::string_view key, std::uint32_t value) {
     out.raw(key);
     out.number(value);
   };
   member(R"("look":)", number);
-  if (object != kNoObject) member(R"(,"object":)", object);
-  if (number == 0) {
-    member(R"(,"mesh":)", (object != kNoObject ? scene_.objects.mesh[object] : group.mesh).value);
-    if (group.track.valid()) member(R"(,"visibility":)", nodes_.timeline_of_track[group.track.value]);
-    member(R"(,"looks":)", nodes_.timeline_of_track[group.looks.value]);
-  }
+  if (number != 0) return;
+  if (mesh.valid()) member(R"(,"mesh":)", mesh.value);
+  if (group.track.valid()) member(R"(,"visibility":)", nodes_.timeline_of_track[group.track.value]);
+  member(R"(,"looks":)", nodes_.timeline_of_track[group.looks.value]);
+}
+
+/// An object of layout groups in look `number` of its group.
+void Document::emit_look_of_object(const Group& group, std::uint32_t number, std::uint32_t object,
+                                   TextOut& out) const {
+  out.raw(R"(,"extras":{"scenegen":{"object":)");
+  out.number(object);
+  out.raw(",");
+  emit_look_members(group, number, scene_.objects.mesh[object], out);
   out.raw("}}");
 }
 
@@ -141,21 +144,19 @@ void Document::emit_group_nodes(Commas& commas, TextOut& out) const {
       out.raw("}");
       continue;
     }
-    const InstanceAccessors& accessors = buffer_.instances[node.group];  // looks share them
-    const auto attribute = [&](std::string_view key, std::uint32_t accessor) {
-      out.raw(key);
-      out.number(accessor);
-    };
+    if (nodes_.layout == Layout::merged) {
+      emit_merged_node(n, out);
+      continue;
+    }
     out.raw(R"(,"mesh":)");
     out.number((node.look.valid() ? node.look : group.mesh).value);
-    attribute(R"(,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":)",
-              accessors.translation);
-    if (group.rotated) attribute(R"(,"ROTATION":)", accessors.rotation);
-    if (group.scaled) attribute(R"(,"SCALE":)", accessors.scale);
-    if (!nodes_.id_table) attribute(R"(,"_OBJECT_ID":)", accessors.object_id);
+    out.raw(R"(,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{)");
+    emit_attributes(group.first_set, out);  // looks share them
     out.raw(carries_pointer ? R"(}},"KHR_node_visibility":{}})" : "}}}");
     if (node.look.valid()) {
-      emit_look_extras(group, node.number, kNoObject, out);
+      out.raw(R"(,"extras":{"scenegen":{)");
+      emit_look_members(group, node.number, group.mesh, out);
+      out.raw("}}");
     } else if (nodes_.id_table) {
       out.raw(R"(,"extras":{"scenegen":{"ids":)");
       out.number(group.first);
@@ -163,6 +164,50 @@ void Document::emit_group_nodes(Commas& commas, TextOut& out) const {
     }
     out.raw("}");
   }
+}
+
+/// "TRANSLATION":17,… of a set.
+void Document::emit_attributes(std::uint32_t set, TextOut& out) const {
+  const InstanceAccessors& accessors = buffer_.instances[set];
+  const auto attribute = [&](std::string_view key, std::uint32_t accessor) {
+    out.raw(key);
+    out.number(accessor);
+  };
+  attribute(R"("TRANSLATION":)", accessors.translation);
+  if (nodes_.sets[set].rotated) attribute(R"(,"ROTATION":)", accessors.rotation);
+  if (nodes_.sets[set].scaled) attribute(R"(,"SCALE":)", accessors.scale);
+  if (!nodes_.id_table) attribute(R"(,"_OBJECT_ID":)", accessors.object_id);
+}
+
+/// A node of layout merged: what is drawn, and in extras the objects that it was made of.
+void Document::emit_merged_node(std::size_t n, TextOut& out) const {
+  const GroupNode& node = nodes_.group_nodes[n];
+  const Group& group = nodes_.groups[node.group];
+  if (merge_.mesh_of_node[n].valid()) {
+    out.raw(R"(,"mesh":)");
+    out.number(merge_.mesh_of_node[n].value);
+  }
+  if (node.by_pointer.track.valid()) {
+    out.raw(",");
+    out.raw(kNodeVisibility);
+  }
+  out.raw(R"(,"extras":{"scenegen":{)");
+  if (node.look.valid()) {
+    emit_look_members(group, node.number, {}, out);
+    out.raw(R"(,"shows":)");
+    out.number(node.look.value);
+    out.raw(",");
+  }
+  out.raw(R"("objects":[)");
+  Commas sets(out);
+  for (std::uint32_t k = group.first_set; k < group.first_set + group.set_count; ++k) {
+    sets.next().raw(R"({"mesh":)");
+    out.number(nodes_.sets[k].mesh.value);
+    out.raw(",");
+    emit_attributes(k, out);
+    out.raw("}");
+  }
+  out.raw("]}}}");
 }
 
 void Document::emit_frame_nodes(Commas& commas, TextOut& out) const {
@@ -238,7 +283,7 @@ void Document::emit_inserted_nodes(Commas& commas, TextOut& out) const {
         emit_transform(scene_.objects.frame_from_object[i], out);
         out.raw(R"(,"mesh":)");
         out.number(nodes_.group_nodes[group.first_node + number].look.value);
-        emit_look_extras(group, number, i, out);
+        emit_look_of_object(group, number, i, out);
         out.raw("}");
       }
     }

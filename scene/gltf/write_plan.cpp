@@ -87,8 +87,8 @@ void plan_wrappers(const Scene& scene, NodePlan& plan) {
 void number_nodes(const Scene& scene, NodePlan& plan) {
   const auto groups = static_cast<std::uint32_t>(plan.group_nodes.size());
   const auto objects = static_cast<std::uint32_t>(plan.object_node_count(scene));
-  plan.first_object = plan.layout == Layout::instances ? groups : 0;
-  plan.first_group = plan.layout == Layout::instances ? 0 : objects;
+  plan.first_object = plan.compact() ? groups : 0;
+  plan.first_group = plan.compact() ? 0 : objects;
   plan.first_frame = groups + objects;
   plan.first_camera = plan.first_frame + static_cast<std::uint32_t>(scene.frames.size());
   plan.first_wrapper = plan.first_camera + static_cast<std::uint32_t>(scene.cameras.size());
@@ -134,7 +134,7 @@ void name_nodes(const Scene& scene, NodePlan& plan) {
 }  // namespace
 
 std::uint32_t NodePlan::node_of(std::uint32_t object) const {
-  if (layout != Layout::instances) return object;
+  if (!compact()) return object;
   const auto at = std::lower_bound(single.begin(), single.end(), object);
   return first_object + static_cast<std::uint32_t>(at - single.begin());
 }

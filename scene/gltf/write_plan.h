@@ -18,14 +18,22 @@ struct Group {
   FrameId frame;  ///< none: the world
   TrackId track;  ///< visibility; none: always visible
   TrackId looks;  ///< mesh track; none: no looks
-  MeshId mesh;    ///< Objects::mesh; none in layout groups, where objects of several meshes share a parent
+  MeshId mesh;    ///< Objects::mesh in layout instances; in others objects of several meshes share a node
+  std::uint32_t first = 0;  ///< into NodePlan::grouped
+  std::uint32_t count = 0;
+  std::uint32_t first_set = 0;   ///< into NodePlan::sets
+  std::uint32_t set_count = 0;   ///< layout instances: 1; layout merged: one for each Objects::mesh
+  std::uint32_t first_node = 0;  ///< into NodePlan::group_nodes
+  std::uint32_t node_count = 1;
+  std::uint32_t first_leaf = 0;  ///< layout groups: nodes of its objects in the looks behind the first
+};
+/// Objects of one group and one mesh whose placements stand in accessors.
+struct InstanceSet {
+  MeshId mesh;              ///< Objects::mesh
   std::uint32_t first = 0;  ///< into NodePlan::grouped
   std::uint32_t count = 0;
   bool rotated = false;  ///< some instance has a rotation
   bool scaled = false;
-  std::uint32_t first_node = 0;  ///< into NodePlan::group_nodes
-  std::uint32_t node_count = 1;
-  std::uint32_t first_leaf = 0;  ///< layout groups: nodes of its objects in the looks behind the first
 };
 struct GroupNode {
   std::uint32_t group = 0;
@@ -65,6 +73,7 @@ struct NodePlan {
 
   FileTracks tracks;
   std::vector<Group> groups;
+  std::vector<InstanceSet> sets;       ///< by group; none in layout groups
   std::vector<GroupNode> group_nodes;  ///< by group, then look
   std::vector<std::uint32_t> grouped;  ///< objects, group by group; by index, or in instances by placement
   /// The tracks behind combined ones, for scenes[0].extras.scenegen.timelines: from the animation alone
@@ -91,14 +100,14 @@ struct NodePlan {
 
   [[nodiscard]] bool pointer() const { return visibility != VisibilityEncoding::scale; }
   [[nodiscard]] bool scale() const { return visibility != VisibilityEncoding::pointer; }
-  /// Objects that have nodes: all, or in layout instances the single ones.
+  /// Objects in groups have no nodes.
+  [[nodiscard]] bool compact() const { return layout == Layout::instances || layout == Layout::merged; }
+  /// Objects that have nodes: all, or in compact layouts the single ones.
   [[nodiscard]] std::size_t object_node_count(const Scene& scene) const {
-    return layout == Layout::instances ? single.size() : scene.objects.size();
+    return compact() ? single.size() : scene.objects.size();
   }
   /// The object of node first_object + k.
-  [[nodiscard]] std::uint32_t object_at(std::uint32_t k) const {
-    return layout == Layout::instances ? single[k] : k;
-  }
+  [[nodiscard]] std::uint32_t object_at(std::uint32_t k) const { return compact() ? single[k] : k; }
   /// Has a node of its own that carries its channels.
   [[nodiscard]] bool is_single(std::uint32_t object) const;
   [[nodiscard]] std::uint32_t leaf_count() const;

@@ -25,7 +25,8 @@ bool write_ours(const std::string& folder) {
                             {"town", testing::town_scene(12, 3)},
                             {"kinds", timeline::test::RandomScene(1).make_kinds(16, 2)}};
   for (const Source& source : sources) {
-    for (const auto layout : {gltf::Layout::nodes, gltf::Layout::groups, gltf::Layout::instances}) {
+    for (const auto layout :
+         {gltf::Layout::nodes, gltf::Layout::groups, gltf::Layout::instances, gltf::Layout::merged}) {
       for (const auto visibility : {gltf::VisibilityEncoding::scale, gltf::VisibilityEncoding::pointer,
                                     gltf::VisibilityEncoding::both}) {
         const std::string path = folder + "/" + source.name + std::to_string(int(layout)) +

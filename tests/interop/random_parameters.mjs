@@ -68,7 +68,7 @@ function drawArguments() {
   return [
     ...(random() < 0.1 ? ['--test-set', String(between(41, 48))] : townArguments()), ...appearanceArguments(),
     ...(random() < 0.4 ? profileArguments() : []),
-    '--seed', String(between(0, 1e9)), '--layout', pick('auto', 'nodes', 'groups', 'instances'),
+    '--seed', String(between(0, 1e9)), '--layout', pick('auto', 'nodes', 'groups', 'instances', 'merged'),
     '--threads', String(between(0, 4)), ...(random() < 0.2 ? ['--draco', '--draco-level', String(between(0, 10))] : []),
   ];
 }

@@ -14,8 +14,10 @@ using scenegen::gltf::Layout;
 using scenegen::gltf::VisibilityEncoding;
 
 bool write_all(const scenegen::Scene& scene, const std::filesystem::path& folder, const std::string& name) {
-  const std::pair<Layout, const char*> layouts[] = {
-      {Layout::nodes, "nodes"}, {Layout::groups, "groups"}, {Layout::instances, "instances"}};
+  const std::pair<Layout, const char*> layouts[] = {{Layout::nodes, "nodes"},
+                                                    {Layout::groups, "groups"},
+                                                    {Layout::instances, "instances"},
+                                                    {Layout::merged, "merged"}};
   const std::pair<VisibilityEncoding, const char*> encodings[] = {{VisibilityEncoding::scale, "scale"},
                                                                   {VisibilityEncoding::pointer, "pointer"},
                                                                   {VisibilityEncoding::both, "both"}};

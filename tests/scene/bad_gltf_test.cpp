@@ -392,7 +392,8 @@ TEST_CASE("every file of ours, damaged a thousand times") {
   std::uint64_t n = 0;
   const Random random(1, "damage");
   const auto below = [&](std::uint64_t most) { return random.below(n++, most); };
-  for (const auto layout : {gltf::Layout::nodes, gltf::Layout::groups, gltf::Layout::instances}) {
+  for (const auto layout :
+       {gltf::Layout::nodes, gltf::Layout::groups, gltf::Layout::instances, gltf::Layout::merged}) {
     for (const auto visibility : {gltf::VisibilityEncoding::scale, gltf::VisibilityEncoding::pointer,
                                   gltf::VisibilityEncoding::both}) {
       REQUIRE(gltf::write(scene, name + "/f.glb", {layout, visibility, 1}));

@@ -68,7 +68,7 @@ class Player {
       if (!nodes[n].contains("mesh") || !visible(n, time_s)) continue;
       for (const std::uint32_t object : objects_of(n)) {
         INFO("object " << object << " at " << time_s << " s");
-        CHECK(out.emplace(object, nodes[n]["mesh"]).second);
+        CHECK(out.emplace(object, mesh_of(n, object)).second);
       }
     }
     return out;
@@ -90,6 +90,19 @@ class Player {
     }
     return true;
   }
+  /// The mesh drawn; of a merged one, what it was merged from.
+  std::uint32_t mesh_of(std::size_t node, std::uint32_t object) const {
+    const json& n = file_.json["nodes"][node];
+    const json extras = n.value("/extras/scenegen"_json_pointer, json::object());
+    if (!extras.contains("objects")) return n["mesh"];
+    if (extras.contains("shows")) return extras["shows"];
+    for (const json& set : extras["objects"]) {
+      const auto ids = file_.numbers(set["_OBJECT_ID"]);
+      if (std::ranges::find(ids, object) != ids.end()) return set["mesh"];
+    }
+    FAIL("object " << object << " is drawn by a node that does not name it");
+    return 0;
+  }
   std::vector<std::uint32_t> objects_of(std::size_t node) const {
     const json& n = file_.json["nodes"][node];
     const json::json_pointer attributes("/extensions/EXT_mesh_gpu_instancing/attributes");
@@ -98,6 +111,15 @@ class Player {
       return {ids.begin(), ids.end()};
     }
     const json extras = n.value("/extras/scenegen"_json_pointer, json::object());
+    if (extras.contains("objects")) {  // by what is drawn
+      std::set<std::uint32_t> drawn;
+      for (const json& primitive : file_.json["meshes"][n["mesh"].get<std::size_t>()]["primitives"]) {
+        const auto halves = file_.numbers(primitive["attributes"]["_OBJECT_ID"]);
+        for (std::size_t v = 0; v < halves.size(); v += 2)
+          drawn.insert(static_cast<std::uint32_t>(halves[v] + 65536 * halves[v + 1]));
+      }
+      return {drawn.begin(), drawn.end()};
+    }
     if (extras.contains("object")) return {extras["object"]};
     if (extras.contains("look") && parents_[node] >= 0)  // child of an object's own node
       return {file_.json["nodes"][static_cast<std::size_t>(parents_[node])]["extras"]["scenegen"].value(
@@ -146,7 +168,7 @@ TEST_CASE("every object is drawn once, with its look, exactly while it is visibl
   const testing::TemporaryFolder folder;
   for (std::uint64_t seed = 20; seed < 24; ++seed) {
     const Scene scene = timeline::test::RandomScene(seed).make_kinds(70, 6);
-    for (const Layout layout : {Layout::nodes, Layout::groups, Layout::instances}) {
+    for (const Layout layout : {Layout::nodes, Layout::groups, Layout::instances, Layout::merged}) {
       for (const auto encoding :
            {VisibilityEncoding::scale, VisibilityEncoding::pointer, VisibilityEncoding::both}) {
         INFO("seed " << seed << " layout " << int(layout) << " encoding " << int(encoding));

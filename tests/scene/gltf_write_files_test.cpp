@@ -72,7 +72,7 @@ void put_file(const std::string& path, const std::string& content) {
 TEST_CASE("prediction is exact, threads change nothing, every form holds the same document") {
   const Scene scenes[] = {testing::everything_scene(), testing::town_scene(5000, 100), Scene{}};
   for (const Scene& scene : scenes) {
-    for (const Layout layout : {Layout::nodes, Layout::groups, Layout::instances}) {
+    for (const Layout layout : {Layout::nodes, Layout::groups, Layout::instances, Layout::merged}) {
       for (const VisibilityEncoding encoding :
            {VisibilityEncoding::scale, VisibilityEncoding::pointer, VisibilityEncoding::both}) {
         const TemporaryFolder folder;

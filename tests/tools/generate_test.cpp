@@ -28,7 +28,7 @@ const char* const kTown = "--grid 2x1 --extras 2 --coherence 0.9 --cells 8x8x8 -
 TEST_CASE("every layout and visibility holds the same scene") {
   const TemporaryFolder folder;
   made_by(folder, kTown + std::string("--layout nodes -o base.glb"));
-  for (const std::string layout : {"nodes", "groups", "instances"}) {
+  for (const std::string layout : {"nodes", "groups", "instances", "merged"}) {
     for (const std::string visibility : {"scale", "pointer", "both"}) {
       for (const std::string file : {"a.glb", "a.gltf"}) {
         made_by(folder, kTown + ("--layout " + layout + " --visibility " + visibility + " -o " + file));
