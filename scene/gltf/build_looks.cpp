@@ -149,6 +149,9 @@ bool LookTable::from_timelines(const std::vector<State>& states, std::uint32_t v
   const auto when_times = times_of(when), what_times = times_of(what);
   const auto when_values = values_of(when), what_values = values_of(what);
   if (std::ranges::any_of(what_values, [&](std::uint32_t v) { return v >= look_count; })) return false;
+  for (const std::span<const float> times : {when_times, what_times}) {
+    if (!times.empty() && times.back() > scene_.duration_s) return false;
+  }
   std::vector<float> state_times;
   std::vector<std::uint32_t> state_looks;
   for (std::size_t i = states.size() > 1 ? 1 : 0; i < states.size(); ++i) {
