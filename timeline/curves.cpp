@@ -5,34 +5,12 @@
 #include <numeric>
 
 #include "timeline/curve_walk.h"
+#include "timeline/words.h"
 
 namespace scenegen::timeline {
 namespace {
 
 constexpr std::array kCurves{CurveKind::hilbert, CurveKind::morton, CurveKind::row_prime};
-
-/// Levenshtein distance: insertions, deletions and substitutions.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
-    }
-  }
-  return row[b.size()];
-}
-
-/// What an error message quotes of a text of any length and content.
-std::string quoted(std::string_view text) {
-  std::string out = "'";
-  for (const char c : text.substr(0, 40)) out += c >= ' ' && c <= '~' ? c : '?';
-  return out + (text.size() > 40 ? "…'" : "'");
-}
 
 struct CellBox {
   glm::uvec3 lo{std::numeric_limits<std::uint32_t>::max()};
@@ -114,13 +92,9 @@ Result<CurveKind> parse_curve(std::string_view text) {
   for (const CurveKind kind : kCurves) {
     if (text == name(kind)) return kind;
   }
-  const std::string_view beginning = text.substr(0, 40);
-  const CurveKind nearest = *std::min_element(kCurves.begin(), kCurves.end(), [&](CurveKind a, CurveKind b) {
-    return edit_distance(beginning, name(a)) < edit_distance(beginning, name(b));
-  });
-  return fail(ErrorKind::usage, "--curve",
-              "unknown value " + quoted(text) + " (did you mean '" + std::string(name(nearest)) +
-                  "'? one of: hilbert, morton, row-prime)");
+  std::vector<std::string_view> names;
+  for (const CurveKind kind : kCurves) names.push_back(name(kind));
+  return fail(ErrorKind::usage, "--curve", unknown_word("value", text, names));
 }
 
 Result<AxisOrder> parse_axis_order(std::string_view text) {
@@ -141,7 +115,7 @@ Result<AxisOrder> parse_axis_order(std::string_view text) {
   }
   if (named == 3 && i == text.size()) return order;
   return fail(ErrorKind::usage, "--order",
-              "unknown value " + quoted(text) +
+              "unknown value " + in_quotes(text) +
                   " (x, y and z once each, the fastest first, each with + or -: +x+y+z, or +x+y-z from top "
                   "to bottom)");
 }

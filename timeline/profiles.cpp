@@ -5,6 +5,7 @@
 
 #include "scene/color.h"
 #include "timeline/track_table.h"
+#include "timeline/words.h"
 
 namespace scenegen::timeline {
 namespace {
@@ -25,9 +26,7 @@ std::string_view name(Profile profile) {
 Result<Profile> parse_profile(std::string_view text) {
   const auto found = std::find(kNames.begin(), kNames.end(), text);
   if (found != kNames.end()) return static_cast<Profile>(found - kNames.begin());
-  std::string what = "unknown profile '" + std::string(text.substr(0, 40)) + "' (one of: ";
-  for (std::size_t i = 0; i < kNames.size(); ++i) what.append(i == 0 ? "" : ", ").append(kNames[i]);
-  return fail(ErrorKind::usage, "", what + ")");
+  return fail(ErrorKind::usage, "", unknown_word("profile", text, kNames));
 }
 
 ProfileOptions::ProfileOptions() {

@@ -27,7 +27,7 @@ enum class Profile : std::uint8_t {
 };
 constexpr std::size_t kProfileCount = 8;
 [[nodiscard]] std::string_view name(Profile profile);
-/// "appear", "construct", …; the error names them. Its `where` is empty.
+/// "appear", "construct", …; the error names the nearest one and all. Its `where` is empty.
 [[nodiscard]] Result<Profile> parse_profile(std::string_view text);
 
 /// One thing that happens to one object. An object may have several (construct, move, demolish); they are

@@ -136,7 +136,8 @@ TEST_CASE("profiles have names") {
     const auto profile = static_cast<Profile>(i);
     CHECK(parse_profile(name(profile)).value() == profile);
   }
-  CHECK_THAT(parse_profile("constuct").error().what, Catch::Matchers::Contains("construct, demolish"));
+  CHECK_THAT(parse_profile("constuct").error().what,
+             Catch::Matchers::Contains("'constuct' (did you mean 'construct'? one of: appear, "));
 }
 
 TEST_CASE("each profile shows what it says") {

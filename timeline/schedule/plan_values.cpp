@@ -196,18 +196,6 @@ std::string plain_word(std::string_view text) {
   return out;
 }
 
-std::string in_quotes(std::string_view text) {
-  constexpr std::size_t kMost = 60;
-  std::size_t end = std::min(text.size(), kMost);
-  while (end < text.size() && end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
-  std::string out = "'";
-  for (const char c : text.substr(0, end)) {
-    const auto byte = static_cast<unsigned char>(c);
-    out += byte < 0x20 || byte == 0x7F ? '?' : c;
-  }
-  return out + (end < text.size() ? "...'" : "'");
-}
-
 Result<CivilSeconds> whole_seconds(double seconds, std::string_view text) {
   if (!(std::abs(seconds) <= kMostSeconds)) return bad(text, "is longer than 100 years");
   return static_cast<CivilSeconds>(std::llround(seconds));
@@ -315,23 +303,6 @@ constexpr std::array<TypeWords, kProfileCount> kTypes{{
     {Profile::appear, " appear appearance show "},
     {Profile::drop, " drop lower lowering "},
 }};
-
-/// Optimal string alignment would be more than is needed for words this short: plain edit distance.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t next =
-          std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      diagonal = row[j];
-      row[j] = next;
-    }
-  }
-  return row[b.size()];
-}
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "timeline/schedule/plan.h"
+#include "timeline/words.h"
 
 namespace scenegen::timeline {
 
@@ -35,7 +36,5 @@ struct LinkText {
 /// Without blanks, dashes and underscores, in lower case (ASCII): "Task_Type" is "tasktype".
 [[nodiscard]] std::string plain_word(std::string_view text);
 [[nodiscard]] std::string_view trimmed(std::string_view text);
-/// Text of a file fit for one line of output, in quotes, cut at 60 bytes (between characters).
-[[nodiscard]] std::string in_quotes(std::string_view text);
 
 }  // namespace scenegen::timeline
