@@ -385,13 +385,14 @@ std::uint32_t PatchPlanner::hang_below(const Task& task) {
 
 std::uint32_t PatchPlanner::add_leaf(const Task& task, std::uint32_t parent) {
   const std::uint32_t node = next_node();
+  const NodeDetail* const d = detail(task.node);
   NewNode leaf;
   leaf.kind = NewNode::Kind::leaf;
   leaf.name = wish(name_of(task.object) + "/visible");
   leaf.object = task.object;
   leaf.stands_for = task.node;
+  if (d != nullptr && document_.ours && d->stands_for != kNone) leaf.stands_for = d->stands_for;
   leaf.pointer = by_pointer() && task.visibility.valid();
-  const NodeDetail* const d = detail(task.node);
   if (d != nullptr && document_.ours && !document_.foreign) leaf.object_index = d->object;
   if (has_looks(task.node)) {
     leaf.object_mesh = d->mesh;
@@ -448,6 +449,10 @@ void PatchPlanner::apply(const Task& task) {
         "'" + reading::printable(name_of(task.object)) +
             "' is one of many instances of a node (EXT_mesh_gpu_instancing): they must become nodes first");
   }
+  if (d != nullptr && document_.ours && d->look != kNone && !document_.foreign) {
+    reject(at, "'" + reading::printable(name_of(task.object)) +
+                   "' is drawn by several nodes, a look each: write its scene with --layout nodes first");
+  }
   if (node.skinned) check_skin(task, at);
   if (has_looks(task.node) && (task.mesh_track.valid() || task.mesh_changes))
     reject(at, "'" + reading::printable(name_of(task.object)) + "' already changes its mesh over time");
@@ -458,10 +463,11 @@ void PatchPlanner::apply(const Task& task) {
   const bool leaf = below || (task.visibility.valid() && (!alone || (by_scale() && !scale_possible(task)))) ||
                     (!task.looks.empty() && node.odd_extras);
   const bool moves_mesh = leaf || !task.looks.empty();
-  if (moves_mesh && (in_.uses.of_node[task.node] & NodeUses::kWeights) != 0) {
-    reject(at, "the file animates the morph weights of '" + reading::printable(name_of(task.object)) +
+  if (moves_mesh && (in_.uses.of_node[task.node] & NodeUses::kWeightsPointer) != 0) {
+    reject(at, "a pointer animates the morph weights of '" + reading::printable(name_of(task.object)) +
                    "', and its mesh would have to go to another node");
   }
+  if (moves_mesh && (in_.uses.of_node[task.node] & NodeUses::kWeights) != 0) out_.moves_weights = true;
   std::uint32_t carrier = task.node;
   if (task.frame.valid() && !below) insert_above(task);
   if (leaf) carrier = add_leaf(task, below ? hang_below(task) : task.node);

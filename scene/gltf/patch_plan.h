@@ -23,7 +23,8 @@ using reading::kNone;
 struct NodeUses {
   static constexpr std::uint8_t kJoint = 1;           ///< of a skin, or its root
   static constexpr std::uint8_t kScaleElsewhere = 2;  ///< scaled by an animation behind the first
-  static constexpr std::uint8_t kWeights = 4;         ///< morph weights are animated
+  static constexpr std::uint8_t kWeights = 4;         ///< morph weights are animated,
+  static constexpr std::uint8_t kWeightsPointer = 8;  ///< by KHR_animation_pointer
   std::vector<std::uint8_t> of_node;
 };
 
@@ -75,12 +76,12 @@ struct NodePatch {
   /// Children of a node or roots of scenes that are replaced by another node, or taken out (kNone).
   std::unordered_map<std::uint32_t, std::uint32_t> swapped;
   bool roots_swapped = false;
+  bool moves_weights = false;          ///< animated morph weights go to other nodes with their mesh
   std::vector<PatchChannel> channels;  ///< of our animation
   AnimationPlan animation;
   std::vector<std::uint32_t>
       dropped;  ///< nodes, ascending: visibility of the file's first animation that ours replaces
   std::uint64_t first_new = 0;  ///< node index of new_nodes[0]
-  std::vector<std::string> notes;
 
   /// Children to add to `parent`.
   [[nodiscard]] std::span<const std::pair<std::uint32_t, std::uint32_t>> added_to(std::uint32_t parent) const;
