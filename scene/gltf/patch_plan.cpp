@@ -70,7 +70,6 @@ class PatchPlanner {
   }
 
   void check_counts() const;
-  void find_retimed();
   void find_looks();
   [[nodiscard]] TrackId always();
   [[nodiscard]] bool task_of(std::uint32_t object, Task& task);
@@ -105,8 +104,8 @@ class PatchPlanner {
   Place nodes_ = root_.key("nodes");
   std::size_t old_frames_;
   std::vector<std::uint32_t> edit_of_node_;
-  std::vector<std::uint8_t> retimed_, pushed_;  ///< by object; empty: none
-  std::vector<TrackId> looks_of_object_;        ///< empty: none
+  Retiming retiming_;
+  std::vector<TrackId> looks_of_object_;  ///< empty: none
   TrackId always_;
   std::vector<Want> wants_;
   UniqueNames names_;
@@ -151,55 +150,6 @@ TrackId PatchPlanner::always() {
   return always_;
 }
 
-/// Objects whose visibility is another than in the file; nodes of the file that would hide them all the same;
-/// objects below such nodes that keep their times, which the node can then no longer give them.
-void PatchPlanner::find_retimed() {
-  const auto& before = in_.source.visibility_of_object;
-  const std::size_t count = scene_.objects.size();
-  retimed_.assign(count, 0);
-  bool any = false;
-  for (std::size_t i = 0; i < count; ++i) {
-    const TrackId former = before.empty() ? TrackId() : before[i];
-    retimed_[i] = scene_.objects.visibility[i] != former ? 1 : 0;
-    any = any || retimed_[i] != 0;
-  }
-  if (!any) return;
-  std::vector<std::uint8_t> hides(document_.nodes.size(), 0);
-  bool file_hides = false;
-  const auto hide = [&](std::uint32_t node) { hides[node] = 1, file_hides = true; };
-  for (const auto& scaled : in_.source.scale_visibility) hide(scaled.node);
-  for (const reading::Channel& channel : document_.channels) {
-    if (channel.path == Path::visibility) hide(channel.target);
-  }
-  for (std::uint32_t n = 0; n < document_.nodes.size(); ++n) {
-    if (!document_.nodes[n].visible) hide(n);
-  }
-  if (!file_hides) return;
-
-  std::vector<std::uint8_t> touched(document_.nodes.size(), 0);  // at or above an object with new times
-  for (std::size_t i = 0; i < count; ++i) {
-    if (retimed_[i] == 0) continue;
-    for (std::uint32_t n = in_.source.node_of_object[i]; n != kNone && touched[n] == 0;
-         n = in_.hierarchy.parent[n])
-      touched[n] = 1;
-  }
-  std::vector<std::uint8_t> below(document_.nodes.size(), 0);
-  for (const std::uint32_t n : in_.hierarchy.order) {
-    const std::uint32_t parent = in_.hierarchy.parent[n];
-    const bool dropped = hides[n] != 0 && touched[n] != 0;
-    below[n] = dropped || (parent != kNone && below[parent] != 0) ? 1 : 0;
-    if (!dropped) continue;
-    out_.dropped.push_back(n);
-    if (!document_.nodes[n].visible) edit(n).show = true;
-  }
-  std::sort(out_.dropped.begin(), out_.dropped.end());
-  pushed_.assign(count, 0);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (retimed_[i] == 0 && scene_.objects.visibility[i].valid())
-      pushed_[i] = below[in_.source.node_of_object[i]];
-  }
-}
-
 void PatchPlanner::find_looks() {
   for (const ObjectMeshTrack& t : scene_.object_mesh_tracks) {
     if (t.track.value < in_.source.track_count) continue;
@@ -212,7 +162,7 @@ bool PatchPlanner::task_of(std::uint32_t object, Task& task) {
   task = Task();
   task.object = ObjectId(object);
   task.node = in_.source.node_of_object[object];
-  if (retimed_[object] != 0 || (!pushed_.empty() && pushed_[object] != 0)) {
+  if (retiming_.wants_track(object)) {
     task.visibility = scene_.objects.visibility[object];
     if (!task.visibility.valid()) task.visibility = always();
   }
@@ -490,17 +440,6 @@ void PatchPlanner::apply(const Task& task) {
   }
 }
 
-Path path_of(Property property) {
-  switch (property) {
-    case Property::translation:
-      return Path::translation;
-    case Property::rotation:
-      return Path::rotation;
-    default:
-      return Path::scale;
-  }
-}
-
 /// Tracks of new frames: each for every node that a frame has become.
 void PatchPlanner::want_frame_tracks() {
   std::vector<std::vector<TrackId>> tracks(scene_.frames.size() - old_frames_);
@@ -531,7 +470,7 @@ void PatchPlanner::want_frame_tracks() {
 /// A node whose times the file gave by scale may lie at rest with another scale than the one shown.
 void PatchPlanner::want_constant_scales() {
   for (const auto& scaled : in_.source.scale_visibility) {
-    if (!std::binary_search(out_.dropped.begin(), out_.dropped.end(), scaled.node)) continue;
+    if (!std::binary_search(retiming_.dropped.begin(), retiming_.dropped.end(), scaled.node)) continue;
     if (document_.nodes[scaled.node].local.scale == scaled.shown) continue;
     const bool driven = std::any_of(wants_.begin(), wants_.end(), [&](const Want& w) {
       return w.target == scaled.node && w.path == Path::scale;
@@ -627,7 +566,8 @@ NodePatch PatchPlanner::plan() {
   tracks_.track_times_s = scene_.track_times_s;
   tracks_.track_values = scene_.track_values;
   tracks_.duration_s = scene_.duration_s;
-  find_retimed();
+  retiming_ = find_retiming(in_);
+  for (const std::uint32_t node : retiming_.invisible) edit(node).show = true;
   find_looks();
   Task task;
   for (std::uint32_t i = 0; i < scene_.objects.size(); ++i) {
@@ -645,18 +585,11 @@ NodePatch PatchPlanner::plan() {
   }
   std::sort(out_.edits.begin(), out_.edits.end(),
             [](const NodeEdit& a, const NodeEdit& b) { return a.node < b.node; });
+  out_.dropped = std::move(retiming_.dropped);
   return std::move(out_);
 }
 
 }  // namespace
-
-std::span<const std::pair<std::uint32_t, std::uint32_t>> NodePatch::added_to(std::uint32_t parent) const {
-  const auto before = [](const auto& a, std::uint32_t p) { return a.first < p; };
-  const auto first = std::lower_bound(added.begin(), added.end(), parent, before);
-  auto last = first;
-  while (last != added.end() && last->first == parent) ++last;
-  return {first, last};
-}
 
 NodePatch plan_patch(const PatchInput& input, Scene& tracks) {
   return PatchPlanner(input, tracks).plan();

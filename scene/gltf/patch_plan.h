@@ -62,6 +62,12 @@ struct NodeEdit {
   ObjectId keep_name;                ///< extras.scenegen.name: the object's
 };
 
+/// Of a frame's track.
+[[nodiscard]] inline reading::Path path_of(Property property) {
+  if (property == Property::translation) return reading::Path::translation;
+  return property == Property::rotation ? reading::Path::rotation : reading::Path::scale;
+}
+
 struct PatchChannel {
   std::uint32_t sampler = 0, target = 0;
   reading::Path path = reading::Path::none;
@@ -95,6 +101,18 @@ struct PatchInput {
   const reading::Hierarchy& hierarchy;
   const NodeUses& uses;
 };
+
+/// Objects whose visibility is another than in the file; nodes of the file that would hide them all the same;
+/// objects below such nodes that keep their times, which the node can then no longer give them.
+struct Retiming {
+  std::vector<std::uint8_t> retimed, pushed;  ///< by object; `pushed` may be empty: none
+  std::vector<std::uint32_t> dropped;         ///< nodes, ascending: see NodePatch
+  std::vector<std::uint32_t> invisible;       ///< of them, those that are not visible at rest
+  [[nodiscard]] bool wants_track(std::uint32_t object) const {
+    return retimed[object] != 0 || (!pushed.empty() && pushed[object] != 0);
+  }
+};
+[[nodiscard]] Retiming find_retiming(const PatchInput& input);
 
 /// `tracks` gets copies of the scene's tracks, and those that are derived from them; the plan's ids point
 /// into it. Faults: something that cannot be expressed.

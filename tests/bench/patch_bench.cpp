@@ -1,6 +1,6 @@
-// Giving a million static nodes times: reading, authoring and patching with ours, beside a program that loads the
-// same file with tinygltf, appends one animation for all and saves. Each runs in a process of its own: CPU seconds
-// and peak memory are the child's. Usage: bench_patch [objects] [folder]
+// Giving a million static nodes times: reading, authoring and patching with ours, beside a program that loads
+// the same file with tinygltf, appends one animation for all and saves. Each runs in a process of its own:
+// CPU seconds and peak memory are the child's. Usage: bench_patch [objects] [folder]
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <tiny_gltf.h>
@@ -54,7 +54,8 @@ Scene static_town(std::uint32_t objects) {
   return scene;
 }
 
-bool patch_ours(const std::string& in, const std::string& out, gltf::VisibilityEncoding visibility, bool drop) {
+bool patch_ours(const std::string& in, const std::string& out, gltf::VisibilityEncoding visibility,
+                bool drop) {
   auto read = gltf::read(in, {true, 1});
   if (!read) return false;
   Scene& scene = read->scene;

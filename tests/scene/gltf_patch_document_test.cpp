@@ -1,5 +1,5 @@
-// A document of another program with everything in it: what it held is still there after patch(), and what must not
-// be possible is refused.
+// A document of another program with everything in it: what it held is still there after patch(), and what
+// must not be possible is refused.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -18,10 +18,10 @@
 namespace {
 
 using namespace scenegen;
+using gltf::VisibilityEncoding;
 using nlohmann::json;
 using scenegen::testing::GltfFile;
 using scenegen::testing::TemporaryFolder;
-using gltf::VisibilityEncoding;
 
 gltf::ReadResult read_source(const std::string& path) {
   auto read = gltf::read(path, {true, 1});
@@ -56,8 +56,8 @@ void check_again(const Scene& authored, const std::string& path) {
   CHECK(comparison.equal());
 }
 
-/// Everything in `before` is in `after` at the same place, where longer arrays are allowed; what is not, and does
-/// not match `allowed`, is listed. Animation i of `before` is i + 1 of `after`.
+/// Everything in `before` is in `after` at the same place, where longer arrays are allowed; what is not, and
+/// does not match `allowed`, is listed. Animation i of `before` is i + 1 of `after`.
 void differences(const json& before, const json& after, const std::string& at, const std::regex& allowed,
                  std::vector<std::string>& out) {
   if (std::regex_match(at, allowed)) return;
@@ -122,7 +122,8 @@ void add_look(Scene& scene, ObjectId id, MaterialId material) {
 }
 
 // What patch() changes on purpose (docs/FORMAT.md 8).
-const std::string kAlways = "/asset/generator|/nodes/[0-9]+/children|/nodes/[0-9]+/(mesh|skin|weights|matrix)";
+const std::string kAlways =
+    "/asset/generator|/nodes/[0-9]+/children|/nodes/[0-9]+/(mesh|skin|weights|matrix)";
 /// The channel of the morphed mesh follows it; two nodes are called Cube.
 const std::string kHere = "|/animations/(0/channels/2|1/channels/1)/target/node|/nodes/1[23]/name";
 const std::string kBuffers = "|/buffers/[0-9]+/(uri|byteLength)|/images/[0-9]+/uri";
@@ -171,7 +172,8 @@ TEST_CASE("patch: everything in a document survives, in every form") {
         std::vector<std::size_t> below = after.json["nodes"][n]["children"];
         for (std::size_t k = 0; k < below.size(); ++k) {
           const json& node = after.json["nodes"][below[k]];
-          for (const std::size_t child : node.value("children", std::vector<std::size_t>{})) below.push_back(child);
+          for (const std::size_t child : node.value("children", std::vector<std::size_t>{}))
+            below.push_back(child);
           if (below[k] < before["nodes"].size() || node.value("mesh", json()) != was["mesh"]) continue;
           found = true;
           CHECK(node.value("skin", json()) == was.value("skin", json()));
@@ -220,14 +222,16 @@ TEST_CASE("patch: over its own input") {
   for (int round = 0; round < 3; ++round) {
     const gltf::ReadResult source = read_source(folder.path("model.gltf"));
     Scene authored = source.scene;
-    authored.objects.visibility[object(authored, "Crate").value] = shown_from(authored, 2.0F + static_cast<float>(round));
+    authored.objects.visibility[object(authored, "Crate").value] =
+        shown_from(authored, 2.0F + static_cast<float>(round));
     const auto report = gltf::patch(*source.source, authored, folder.path("model.gltf"), {});
     if (!report) FAIL(report.error().str());
     check_again(authored, folder.path("model.gltf"));
   }
   CHECK(testing::file_bytes(folder.path("model.bin")) == data);
   CHECK(folder.files() == std::vector<std::string>{"model.bin", "model.gltf", "model_timeline.bin",
-                                                   "model_timeline_2.bin", "model_timeline_3.bin", "picture.png"});
+                                                   "model_timeline_2.bin", "model_timeline_3.bin",
+                                                   "picture.png"});
 
   const gltf::ReadResult source = read_source(folder.path("model.gltf"));
   REQUIRE(gltf::patch(*source.source, source.scene, folder.path("model.glb"), {}));
@@ -306,7 +310,8 @@ TEST_CASE("patch: a material that is copied keeps everything but its color") {
     for (Primitive& p : mesh.primitives) p.material = added;
     const float start[] = {0.0F}, value[] = {static_cast<float>(authored.meshes.size())};
     authored.meshes.push_back(mesh);
-    authored.object_mesh_tracks.push_back({id, authored.add_track(Property::mesh, Interpolation::step, start, value)});
+    authored.object_mesh_tracks.push_back(
+        {id, authored.add_track(Property::mesh, Interpolation::step, start, value)});
     const float times[] = {0, 3}, colors[] = {1, 0, 0, 1, 0, 1, 0, 1};
     authored.material_tracks.push_back(
         {added, authored.add_track(Property::base_color, Interpolation::linear, times, colors)});

@@ -130,7 +130,8 @@ class RandomDocument {
                             {"output", text_.floats(kind == 1 ? "VEC4" : "VEC3", 3, values)},
                             {"interpolation", kind == 3 ? "STEP" : "LINEAR"}});
         const char* paths[] = {"translation", "rotation", "scale", "scale"};
-        channels.push_back({{"sampler", samplers.size() - 1}, {"target", {{"node", i}, {"path", paths[kind]}}}});
+        channels.push_back(
+            {{"sampler", samplers.size() - 1}, {"target", {{"node", i}, {"path", paths[kind]}}}});
       }
       if (!channels.empty())
         animations.push_back({{"channels", channels}, {"samplers", samplers}, {"name", "walk"}});
@@ -160,7 +161,8 @@ class Author {
       scene_.materials.push_back(m);
     }
     for (std::uint32_t i = 0; i < scene_.objects.size(); ++i) {
-      if (!may_never_show_ || !dice_.chance(3)) scene_.objects.visibility[i] = dice_.chance(8) ? TrackId() : visibility();
+      if (!may_never_show_ || !dice_.chance(3))
+        scene_.objects.visibility[i] = dice_.chance(8) ? TrackId() : visibility();
       const bool has_extent = scene_.objects.frame_from_object[i].scale != glm::vec3(0.0F);
       if (has_extent && dice_.chance(4)) drop(i);
       if (dice_.chance(4)) look(i);
@@ -213,7 +215,8 @@ class Author {
     mesh.name += " highlighted";
     const auto highlighted = static_cast<float>(scene_.meshes.size());
     scene_.meshes.push_back(mesh);
-    const float times[] = {0.5F, 1.5F, 3.0F}, values[] = {highlighted, static_cast<float>(own.value), highlighted};
+    const float times[] = {0.5F, 1.5F, 3.0F},
+                values[] = {highlighted, static_cast<float>(own.value), highlighted};
     const std::size_t keys = 1 + dice_.below(3);
     scene_.object_mesh_tracks.push_back(
         {ObjectId(object), scene_.add_track(Property::mesh, Interpolation::step, std::span(times).first(keys),
@@ -237,7 +240,8 @@ gltf::ReadResult read_source(const std::string& path) {
 void check_again(const Scene& authored, const std::string& path) {
   const auto read = gltf::read(path);
   if (!read) FAIL(read.error().str());
-  for (const Finding& f : validate(read->scene)) FAIL_CHECK("rule " << f.rule << ": " << f.where << ": " << f.what);
+  for (const Finding& f : validate(read->scene))
+    FAIL_CHECK("rule " << f.rule << ": " << f.where << ": " << f.what);
   const auto comparison = timeline::compare(authored, read->scene);
   for (const auto& d : comparison.differences) UNSCOPED_INFO(d.where << ": " << d.what);
   CHECK(comparison.equal());

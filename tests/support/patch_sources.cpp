@@ -18,8 +18,8 @@ using nlohmann::json;
 /// A buffer and the accessors on it.
 class Data {
  public:
-  std::size_t add(const std::string& type, int components, const std::vector<float>& values, bool vertices = false,
-                  bool bounds = false) {
+  std::size_t add(const std::string& type, int components, const std::vector<float>& values,
+                  bool vertices = false, bool bounds = false) {
     json accessor = {{"bufferView", view(values)},
                      {"componentType", 5126},
                      {"count", values.size() / static_cast<std::size_t>(components)},
@@ -76,7 +76,8 @@ void add_meshes(json& document, Data& data) {
   const std::size_t weights = data.add("VEC4", 4, {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, true);
   const std::size_t joints = data.joints(3);
   const json plain = {{"attributes", {{"POSITION", position}, {"TEXCOORD_0", uv}}}, {"material", 0}};
-  json second = {{"attributes", {{"POSITION", data.add("VEC3", 3, {0, 0, 0, 0, 2, 0, 0, 0, 2}, true, true)}}}};
+  json second = {
+      {"attributes", {{"POSITION", data.add("VEC3", 3, {0, 0, 0, 0, 2, 0, 0, 0, 2}, true, true)}}}};
   second["extras"] = {{"part", "second"}};
   json morphed = plain;
   morphed["targets"] = {{{"POSITION", moved}}};
@@ -91,12 +92,12 @@ void add_meshes(json& document, Data& data) {
 }
 
 void add_materials(json& document) {
-  document["materials"] = {
-      {{"name", "glossy"},
-       {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}, {"baseColorFactor", {1, 0.5, 0.5, 1}}}},
-       {"extensions", {{"KHR_materials_clearcoat", {{"clearcoatFactor", 0.5}}}}},
-       {"extras", {{"supplier", "ACME"}}}},
-      {{"doubleSided", true}, {"emissiveFactor", {0.5, 0, 0}}}};
+  document["materials"] = {{{"name", "glossy"},
+                            {"pbrMetallicRoughness",
+                             {{"baseColorTexture", {{"index", 0}}}, {"baseColorFactor", {1, 0.5, 0.5, 1}}}},
+                            {"extensions", {{"KHR_materials_clearcoat", {{"clearcoatFactor", 0.5}}}}},
+                            {"extras", {{"supplier", "ACME"}}}},
+                           {{"doubleSided", true}, {"emissiveFactor", {0.5, 0, 0}}}};
   document["textures"] = {{{"source", 0}, {"sampler", 0}}};
   document["samplers"] = {{{"magFilter", 9729}, {"wrapS", 33071}}};
   document["images"] = {{{"uri", "picture.png"}, {"name", "a picture"}}};
@@ -106,11 +107,17 @@ void add_nodes(json& document, Data& data) {
   const json skewed = {1, 0, 0, 0, 0.5, 1, 0, 0, 0, 0, 1, 0, 3, 0, 0, 1};
   const json placed = {2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 4, 0, 1, 1};
   document["nodes"] = {
-      {{"name", "Root"}, {"children", {1, 2, 3, 4, 5, 6, 7, 9}}, {"translation", {0, 1.5, 0}}, {"extras", "text"}},
+      {{"name", "Root"},
+       {"children", {1, 2, 3, 4, 5, 6, 7, 9}},
+       {"translation", {0, 1.5, 0}},
+       {"extras", "text"}},
       {{"name", "Crate"}, {"mesh", 1}, {"scale", {1, 2, 1}}, {"extras", {{"guid", "2O2Fr$t4X7Zf8NOew3FL"}}}},
       {{"name", "Arm"}, {"mesh", 0}, {"children", {8}}, {"translation", {1, 0, 0}}},
       {{"name", "Skewed"}, {"mesh", 0}, {"matrix", skewed}},
-      {{"name", "Placed"}, {"mesh", 1}, {"matrix", placed}, {"extensions", {{"VENDOR_thing", {{"a", {1, 2}}}}}}},
+      {{"name", "Placed"},
+       {"mesh", 1},
+       {"matrix", placed},
+       {"extensions", {{"VENDOR_thing", {{"a", {1, 2}}}}}}},
       {{"name", "Lamp"}, {"mesh", 0}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}},
       {{"name", "Eye"}, {"mesh", 0}, {"children", {10}}, {"extras", {1, 2}}},
       {{"name", "Bone"}, {"mesh", 0}, {"translation", {0, 0, 2}}},
@@ -118,7 +125,10 @@ void add_nodes(json& document, Data& data) {
       {{"name", "Morphed"}, {"mesh", 2}, {"weights", {0.75}}, {"translation", {0, 3, 0}}},
       {{"name", "View"}, {"camera", 0}},
       {{"name", "Skinned"}, {"mesh", 3}, {"skin", 0}},
-      {{"name", "Cube"}, {"mesh", 0}, {"translation", {5, 0, 0}}, {"extras", {{"scenegen", {{"note", "mine"}}}}}},
+      {{"name", "Cube"},
+       {"mesh", 0},
+       {"translation", {5, 0, 0}},
+       {"extras", {{"scenegen", {{"note", "mine"}}}}}},
       {{"name", "Cube"}, {"mesh", 0}, {"children", {14}}, {"translation", {6, 0, 0}}},
       {{"mesh", 0}, {"translation", {0, 0, 1}}, {"extras", 7}},
       {{"name", "nothing"}, {"mesh", 0}, {"scale", {0, 0, 0}}},
@@ -132,16 +142,20 @@ void add_nodes(json& document, Data& data) {
 
   const std::size_t input = data.add("SCALAR", 1, {0, 1, 2}, false, true);
   const float half = 0.70710677F;
-  json samplers = {{{"input", input}, {"output", data.add("VEC4", 4, {0, 0, 0, 1, 0, half, 0, half, 0, 0, 0, 1})}},
-                   {{"input", input}, {"output", data.add("VEC3", 3, {1, 1, 1, 2, 1, 1, 1, 1, 1})}},
-                   {{"input", input}, {"output", data.add("SCALAR", 1, {0, 1, 0})}}};
-  json channels = {{{"sampler", 0}, {"target", {{"node", 2}, {"path", "rotation"}}}},
-                   {{"sampler", 1}, {"target", {{"node", 8}, {"path", "scale"}}}},
-                   {{"sampler", 2}, {"target", {{"node", 9}, {"path", "weights"}}}, {"extras", {{"kept", 1}}}}};
+  json samplers = {
+      {{"input", input}, {"output", data.add("VEC4", 4, {0, 0, 0, 1, 0, half, 0, half, 0, 0, 0, 1})}},
+      {{"input", input}, {"output", data.add("VEC3", 3, {1, 1, 1, 2, 1, 1, 1, 1, 1})}},
+      {{"input", input}, {"output", data.add("SCALAR", 1, {0, 1, 0})}}};
+  json channels = {
+      {{"sampler", 0}, {"target", {{"node", 2}, {"path", "rotation"}}}},
+      {{"sampler", 1}, {"target", {{"node", 8}, {"path", "scale"}}}},
+      {{"sampler", 2}, {"target", {{"node", 9}, {"path", "weights"}}}, {"extras", {{"kept", 1}}}}};
   document["animations"] = {{{"name", "walk"}, {"samplers", samplers}, {"channels", channels}},
-                            {{"name", "jump"}, {"samplers", {samplers[1], samplers[2]}},
-                             {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "scale"}}}},
-                                           {{"sampler", 1}, {"target", {{"path", "weights"}, {"node", 9}}}}}}}};
+                            {{"name", "jump"},
+                             {"samplers", {samplers[1], samplers[2]}},
+                             {"channels",
+                              {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "scale"}}}},
+                               {{"sampler", 1}, {"target", {{"path", "weights"}, {"node", 9}}}}}}}};
 }
 
 }  // namespace
@@ -154,8 +168,8 @@ void write_everything_document(const std::string& path) {
                        {"copyright", "somebody"},
                        {"extras", {{"author", "somebody"}}}};
   document["extensionsUsed"] = {"KHR_lights_punctual", "KHR_materials_clearcoat", "VENDOR_thing"};
-  document["extensions"] = {
-      {"KHR_lights_punctual", {{"lights", {{{"type", "point"}, {"name", "bulb"}}}}}}, {"VENDOR_thing", {{"b", nullptr}}}};
+  document["extensions"] = {{"KHR_lights_punctual", {{"lights", {{{"type", "point"}, {"name", "bulb"}}}}}},
+                            {"VENDOR_thing", {{"b", nullptr}}}};
   document["extras"] = {{"anything", {true, false, nullptr, 1e-7, "\u00e9\u4e16"}}};
   add_materials(document);
   add_meshes(document, data);
@@ -185,7 +199,8 @@ void write_instanced_document(const std::string& path) {
   document["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", position}}}}}}}};
   const std::size_t places = data.add("VEC3", 3, {0, 0, 0, 2, 0, 0, 4, 0, 0});
   document["nodes"] = {
-      {{"mesh", 0}, {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", places}}}}}}}}};
+      {{"mesh", 0},
+       {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", places}}}}}}}}};
   document["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
   document["scenes"] = {{{"nodes", {0}}}};
   const std::filesystem::path place(path);
