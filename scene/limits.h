@@ -29,5 +29,8 @@ constexpr std::uint32_t kMaxThreads = 256;
 // takes 2 to 5 kB.
 constexpr std::uint64_t kMaxPlanBytes = 64ULL << 20;
 constexpr std::uint64_t kMaxTasks = 1'000'000;
+// Pairs of a task and an object that it is about: 12 B each while tasks are mapped (600 MB at the limit, and
+// as much again for activities).
+constexpr std::uint64_t kMaxClaims = 50'000'000;
 
 }  // namespace scenegen::limits

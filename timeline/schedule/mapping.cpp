@@ -4,6 +4,7 @@
 #include <array>
 #include <unordered_map>
 
+#include "scene/limits.h"
 #include "timeline/schedule/plan_values.h"
 
 namespace scenegen::timeline {
@@ -42,6 +43,7 @@ class Mapper {
   /// Adds what `selector` finds; whether that was anything.
   bool take(std::uint32_t task, const Selector& selector) { return take(task, selector, rule_of(selector)); }
   bool take(std::uint32_t task, const Selector& selector, MatchRule rule) {
+    if (claims_.size() > limits::kMaxClaims) return true;  // an error anyway, when the task is done
     const std::vector<ObjectId> found = selector.select(facts_);
     for (const ObjectId object : found) claims_.push_back({task, object, rule});
     return !found.empty();
@@ -51,7 +53,8 @@ class Mapper {
   Result<void> take_task(std::uint32_t task);
   Result<void> take_saved(std::uint32_t task, const SavedMapping::Entry& entry);
   void note(const std::string& where, const std::string& what) { out_.notes.push_back(where + ": " + what); }
-  [[nodiscard]] bool above(std::uint32_t task, std::uint32_t other) const;
+  [[nodiscard]] std::unordered_map<std::uint32_t, MatchRule> surest_below_summaries(
+      std::span<const Claim> claims) const;
   void settle_object(std::span<Claim> claims);
   void settle();
 
@@ -125,10 +128,21 @@ Result<void> Mapper::take_saved(std::uint32_t index, const SavedMapping::Entry& 
   return {};
 }
 
-/// Whether `task` is a summary that `other` is below.
-bool Mapper::above(std::uint32_t task, std::uint32_t other) const {
-  while (other != Task::kNone && other != task) other = plan_.tasks[other].parent;
-  return other == task;
+/// By summary task: the surest rule of the claims of tasks below it. Empty where no summary claims the
+/// object.
+std::unordered_map<std::uint32_t, MatchRule> Mapper::surest_below_summaries(
+    std::span<const Claim> claims) const {
+  std::unordered_map<std::uint32_t, MatchRule> out;
+  const bool any = std::any_of(claims.begin(), claims.end(),
+                               [&](const Claim& claim) { return plan_.tasks[claim.task].summary; });
+  if (!any) return out;
+  for (const Claim& claim : claims) {
+    for (std::uint32_t up = plan_.tasks[claim.task].parent; up != Task::kNone; up = plan_.tasks[up].parent) {
+      const auto entry = out.emplace(up, claim.rule).first;
+      entry->second = std::min(entry->second, claim.rule);
+    }
+  }
+  return out;
 }
 
 enum class Group : std::uint8_t { appears, goes, other };
@@ -154,6 +168,7 @@ void Mapper::settle_object(std::span<Claim> claims) {
     return sa != sb ? sa < sb : a.task < b.task;
   });
   Mapping::Shared shared{claims.front().object, {}, {}};
+  const std::unordered_map<std::uint32_t, MatchRule> surest_below = surest_below_summaries(claims);
   std::array<MatchRule, 2> strongest{};  // by Group, of the run that begins here
   std::size_t run_end = 0;
   for (std::size_t i = 0; i < claims.size(); ++i) {
@@ -172,9 +187,8 @@ void Mapper::settle_object(std::span<Claim> claims) {
     const Claim& claim = claims[i];
     const Group g = group_of(plan_.tasks[claim.task].profile);
     const bool weaker = g != Group::other && claim.rule > strongest[static_cast<std::size_t>(g)];
-    const bool summary = std::any_of(claims.begin(), claims.end(), [&](const Claim& other) {
-      return other.task != claim.task && other.rule <= claim.rule && above(claim.task, other.task);
-    });
+    const auto below = surest_below.find(claim.task);
+    const bool summary = below != surest_below.end() && below->second <= claim.rule;
     (weaker || summary ? shared.losers : shared.tasks).push_back(claim.task);
     if (!weaker && !summary) out_.objects_of_task[claim.task].push_back(claim.object);
   }
@@ -222,6 +236,10 @@ Result<Mapping> Mapper::run() {
     const auto entry = saved.find(plan_.tasks[i].id);
     auto taken = entry == saved.end() ? take_task(i) : take_saved(i, *entry->second);
     if (!taken) return forward_error(taken);
+    if (claims_.size() > limits::kMaxClaims) {
+      return fail(ErrorKind::bad_input, plan_.tasks[i].where,
+                  "more than " + std::to_string(limits::kMaxClaims) + " pairs of a task and an object");
+    }
     if (entry != saved.end()) saved.erase(entry);
   }
   if (options_.saved != nullptr && !saved.empty()) {
