@@ -18,13 +18,14 @@ export function plays(viewer, { layout, visibility, color }, feature) {
       // Babylon passes over pointers to the visibility of nodes without a mesh.
       return visibility !== 'pointer' || (pointers && !(viewer === 'babylon' && layout === 'groups'));
     case 'passing look':
-      // … and an object with looks is a node without a mesh in every layout.
-      return visibility !== 'pointer' || viewer === 'three+pointer';
+      // … and an object with looks is a node without a mesh, but in `instances`, where objects with the same looks share nodes.
+      return visibility !== 'pointer' || viewer === 'three+pointer' || (viewer === 'babylon' && layout === 'instances');
     case 'color':
       return pointers;
     case 'all':
       return plays(viewer, { layout, visibility }, 'visibility') &&
-        (color === 'swap' ? plays(viewer, { layout, visibility }, 'passing look') : true) && (color === 'pointer' ? pointers : true);
+        // A file has objects that are alone with their looks, in `instances` too.
+        (color !== 'swap' || plays(viewer, { layout: 'nodes', visibility }, 'passing look')) && (color === 'pointer' ? pointers : true);
     default:
       return true;
   }

@@ -1,5 +1,6 @@
 // truth FILE TIME_S...: what our player says of a file, as JSON on stdout: names of the objects, and at every
-// time the linear base colour of each visible one (null where a texture or transparency makes it another).
+// time, of each visible one, the linear base colour (null where a texture or transparency makes it another)
+// and the matrix that puts it into the world, column by column.
 #include <cstdlib>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -23,6 +24,15 @@ nlohmann::json color_of(const Scene& scene, const timeline::Player& player, Obje
   return {color.x, color.y, color.z};
 }
 
+nlohmann::json matrix_of(const timeline::Player& player, ObjectId id) {
+  const glm::mat4 world_from_object = player.world_from_object(id);
+  nlohmann::json out = nlohmann::json::array();
+  for (int column = 0; column < 4; ++column) {
+    for (int row = 0; row < 4; ++row) out.push_back(world_from_object[column][row]);
+  }
+  return out;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -38,11 +48,13 @@ int main(int argc, char** argv) {
   for (int i = 2; i < argc; ++i) {
     const double time_s = std::atof(argv[i]);
     player.seek(time_s);
-    nlohmann::json colors = nlohmann::json::object();
+    nlohmann::json colors = nlohmann::json::object(), matrices = nlohmann::json::object();
     for (std::size_t o = 0; o < scene.objects.size(); ++o) {
-      if (player.visible(ObjectId(o))) colors[std::to_string(o)] = color_of(scene, player, ObjectId(o));
+      if (!player.visible(ObjectId(o))) continue;
+      colors[std::to_string(o)] = color_of(scene, player, ObjectId(o));
+      matrices[std::to_string(o)] = matrix_of(player, ObjectId(o));
     }
-    out["frames"].push_back({{"time_s", time_s}, {"colors", colors}});
+    out["frames"].push_back({{"time_s", time_s}, {"colors", colors}, {"matrices", matrices}});
   }
   std::cout << out << '\n';
   return 0;
