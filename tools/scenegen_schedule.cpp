@@ -24,7 +24,6 @@ namespace {
 using nlohmann::ordered_json;
 using timeline::Mapping;
 using timeline::Plan;
-using timeline::Profile;
 using timeline::Task;
 
 /// What was made, or would be.
