@@ -42,15 +42,15 @@ class PatchedDocument : public FileContent {
     report.channels = nodes_.channels.size() + text_.carried.channels.size();
     report.samplers = nodes_.animation.samplers.size() + carried_samplers_.size();
     report.accessors = in_.document.accessors.size() + buffers_.animation.accessor_count;
-    report.notes = nodes_.notes;
-    report.notes.insert(report.notes.end(), buffers_.notes.begin(), buffers_.notes.end());
+    report.notes = buffers_.notes;
+    report.notes.insert(report.notes.end(), text_.notes.begin(), text_.notes.end());
     return report;
   }
 
  private:
   void plan_carried() {
     new_index_.assign(text_.carried.samplers.size(), kNone);
-    for (const CarriedChannel& c : text_.carried.channels) new_index_[c.sampler_index] = 0;
+    for (const CarriedChannel& c : text_.carried.channels) new_index_.at(c.sampler_index) = 0;
     for (std::uint32_t s = 0; s < new_index_.size(); ++s) {
       if (new_index_[s] == kNone) continue;
       new_index_[s] = static_cast<std::uint32_t>(nodes_.animation.samplers.size() + carried_samplers_.size());
@@ -197,9 +197,12 @@ void PatchedDocument::emit_animation(TextOut& out) const {
     }
   }
   for (const CarriedChannel& c : text_.carried.channels) {
-    text.next().raw(json_.substr(c.whole.begin, c.sampler.begin - c.whole.begin));
-    out.number(new_index_[c.sampler_index]);
-    out.raw(json_.substr(c.sampler.end, c.whole.end - c.sampler.end));
+    Splices numbers;
+    numbers.replace(c.sampler, std::to_string(new_index_[c.sampler_index]));
+    if (!c.node.empty()) numbers.replace(c.node, std::to_string(c.node_index));
+    numbers.sort();
+    text.next();
+    numbers.emit(json_, c.whole, out);
   }
   out.raw("]}");
 }

@@ -60,8 +60,9 @@ class TextPatcher {
   void patch_buffers(Value value, const Place& at);
   void patch_images(Value value, const Place& at);
   void patch_animations(Value value, const Place& at);
-  void read_first_animation(Value value, const Place& at);
-  void read_channel(std::size_t index, Value value, const Place& at);
+  void read_animation(Value value, const Place& at);
+  void read_channel(bool is_first, Value value, const Place& at);
+  void move_weights(const ItemList& channel, Span node, std::uint32_t from, const CarriedChannel* carried);
   void patch_extensions_used(Value value, const Place& at);
   void patch_materials(Value value, const Place& at);
   void patch_meshes(Value value, const Place& at);
@@ -82,6 +83,7 @@ class TextPatcher {
   AssetPatch& assets_;
   TextPatch out_;
   std::vector<std::string> seen_;     ///< members of the root
+  std::vector<std::string> names_;    ///< of the file's animations
   std::vector<std::uint8_t> driven_;  ///< by node of the file: 1 its scale, 2 its visibility, by our channels
 };
 
@@ -365,38 +367,84 @@ bool TextPatcher::carries(const reading::Channel& channel) const {
          std::none_of(visible.begin(), visible.end(), [&](const auto& v) { return v.node == node; });
 }
 
-void TextPatcher::read_channel(std::size_t index, Value value, const Place& at) {
-  std::size_t sampler = kAbsent;
-  const ItemList list =
-      text_.members(value, at, [&](std::size_t k, std::string_view key, Value&, const Place&) {
-        if (key == "sampler") sampler = k;
-      });
-  if (sampler == kAbsent || index >= in_.document.channels.size()) return;
-  const reading::Channel& channel = in_.document.channels[index];
-  if (!carries(channel)) return;
-  out_.carried.channels.push_back({list.brackets, list.items[sampler].value_span(), channel.sampler});
+/// Morph weights are of the node that has the mesh: the channel goes to where the mesh went, once for each
+/// look.
+void TextPatcher::move_weights(const ItemList& channel, Span node, std::uint32_t from,
+                               const CarriedChannel* carried) {
+  bool first = true;
+  for (std::size_t i = 0; i < nodes_.new_nodes.size(); ++i) {
+    const NewNode& made = nodes_.new_nodes[i];
+    if (made.source != from || made.mesh == kNone) continue;
+    const auto to = static_cast<std::uint32_t>(nodes_.first_new + i);
+    if (first) {
+      out_.splices.replace(node, std::to_string(to));
+    } else {
+      const std::string_view text = text_.text();
+      out_.splices.insert(
+          channel.brackets.end,
+          "," + std::string(text.substr(channel.brackets.begin, node.begin - channel.brackets.begin)) +
+              std::to_string(to) + std::string(text.substr(node.end, channel.brackets.end - node.end)));
+    }
+    first = false;
+    if (carried == nullptr) continue;
+    out_.carried.channels.push_back(*carried);
+    out_.carried.channels.back().node = node;
+    out_.carried.channels.back().node_index = to;
+  }
 }
 
-void TextPatcher::read_first_animation(Value value, const Place& at) {
+void TextPatcher::read_channel(bool is_first, Value value, const Place& at) {
+  std::size_t sampler = kAbsent;
+  Inner target;
+  std::uint32_t node = kNone;
+  bool weights = false;
+  const ItemList list =
+      text_.members(value, at, [&](std::size_t k, std::string_view key, Value& v, const Place& p) {
+        if (key == "sampler") sampler = k;
+        if (key != "target" || !nodes_.moves_weights) return;
+        target.list =
+            text_.members(v, p, [&](std::size_t i, std::string_view name, Value& w, const Place& q) {
+              if (name == "path") weights = reading::get_string(w, q) == "weights";
+              if (name != "node") return;
+              target.item = i;
+              node = reading::get_index(w, q);
+            });
+      });
+  CarriedChannel carried;
+  bool carry = false;
+  if (is_first && sampler != kAbsent && at.index < in_.document.channels.size()) {
+    const reading::Channel& channel = in_.document.channels[at.index];
+    carry = carries(channel);
+    carried = {list.brackets, list.items[sampler].value_span(), channel.sampler, {}, 0};
+  }
+  const auto edited = std::lower_bound(nodes_.edits.begin(), nodes_.edits.end(), node,
+                                       [](const NodeEdit& e, std::uint32_t n) { return e.node < n; });
+  if (weights && edited != nodes_.edits.end() && edited->node == node && edited->drop_mesh)
+    return move_weights(list, target.list.items[target.item].value_span(), node, carry ? &carried : nullptr);
+  if (carry) out_.carried.channels.push_back(carried);
+}
+
+void TextPatcher::read_animation(Value value, const Place& at) {
+  const bool is_first = at.index == 0;
   reading::each_field(value, at, [&](std::string_view key, Value& v, const Place& p) {
-    if (key == "samplers") {
+    if (key == "name") names_.emplace_back(reading::get_string(v, p));
+    if (key == "samplers" && is_first) {
       const ItemList list = text_.elements(v, p, [](std::size_t, Value&, const Place&) {});
       for (const ItemList::Item& item : list.items) out_.carried.samplers.push_back(item.whole);
-    } else if (key == "channels") {
-      reading::each_element(v, p, [&](Value& w, const Place& q) { read_channel(q.index, w, q); });
+    } else if (key == "channels" && (is_first || nodes_.moves_weights)) {
+      reading::each_element(v, p, [&](Value& w, const Place& q) { read_channel(is_first, w, q); });
     }
   });
 }
 
 void TextPatcher::patch_animations(Value value, const Place& at) {
   if (!animates()) return;
-  std::vector<std::string> names;
-  const ItemList list = text_.each(value, at, [&](Value& animation, const Place& p) {
-    if (p.index == 0) return read_first_animation(animation, p);
-    (void)names;
-  });
+  const ItemList list =
+      text_.each(value, at, [&](Value& animation, const Place& p) { read_animation(animation, p); });
   out_.splices.insert(list.brackets.begin + 1, {}, Part::animation);
   if (!list.items.empty()) out_.splices.insert(list.brackets.begin + 1, ",");
+  for (int i = 2; std::find(names_.begin(), names_.end(), out_.animation_name) != names_.end(); ++i)
+    out_.animation_name = "timeline~" + std::to_string(i);
 }
 
 // ---- The rest
@@ -417,7 +465,11 @@ std::vector<std::string> TextPatcher::extensions() const {
 void TextPatcher::patch_extensions_used(Value value, const Place& at) {
   std::vector<std::string> wanted = extensions();
   const ItemList list = text_.each(value, at, [&](Value& v, const Place& p) {
-    std::erase(wanted, std::string(reading::get_string(v, p)));
+    const std::string_view name = reading::get_string(v, p);
+    std::erase(wanted, std::string(name));
+    if (name == "KHR_interactivity" && animates() && in_.document.animated)
+      out_.notes.emplace_back(
+          "the file uses KHR_interactivity, which refers to animations by number: they have moved up by one");
   });
   std::string added;
   for (const std::string& name : wanted) add_item(added, json_string(name));

@@ -70,7 +70,6 @@ class PatchPlanner {
   }
 
   void check_counts() const;
-  void find_retimed();
   void find_looks();
   [[nodiscard]] TrackId always();
   [[nodiscard]] bool task_of(std::uint32_t object, Task& task);
@@ -105,8 +104,8 @@ class PatchPlanner {
   Place nodes_ = root_.key("nodes");
   std::size_t old_frames_;
   std::vector<std::uint32_t> edit_of_node_;
-  std::vector<std::uint8_t> retimed_, pushed_;  ///< by object; empty: none
-  std::vector<TrackId> looks_of_object_;        ///< empty: none
+  Retiming retiming_;
+  std::vector<TrackId> looks_of_object_;  ///< empty: none
   TrackId always_;
   std::vector<Want> wants_;
   UniqueNames names_;
@@ -151,55 +150,6 @@ TrackId PatchPlanner::always() {
   return always_;
 }
 
-/// Objects whose visibility is another than in the file; nodes of the file that would hide them all the same;
-/// objects below such nodes that keep their times, which the node can then no longer give them.
-void PatchPlanner::find_retimed() {
-  const auto& before = in_.source.visibility_of_object;
-  const std::size_t count = scene_.objects.size();
-  retimed_.assign(count, 0);
-  bool any = false;
-  for (std::size_t i = 0; i < count; ++i) {
-    const TrackId former = before.empty() ? TrackId() : before[i];
-    retimed_[i] = scene_.objects.visibility[i] != former ? 1 : 0;
-    any = any || retimed_[i] != 0;
-  }
-  if (!any) return;
-  std::vector<std::uint8_t> hides(document_.nodes.size(), 0);
-  bool file_hides = false;
-  const auto hide = [&](std::uint32_t node) { hides[node] = 1, file_hides = true; };
-  for (const auto& scaled : in_.source.scale_visibility) hide(scaled.node);
-  for (const reading::Channel& channel : document_.channels) {
-    if (channel.path == Path::visibility) hide(channel.target);
-  }
-  for (std::uint32_t n = 0; n < document_.nodes.size(); ++n) {
-    if (!document_.nodes[n].visible) hide(n);
-  }
-  if (!file_hides) return;
-
-  std::vector<std::uint8_t> touched(document_.nodes.size(), 0);  // at or above an object with new times
-  for (std::size_t i = 0; i < count; ++i) {
-    if (retimed_[i] == 0) continue;
-    for (std::uint32_t n = in_.source.node_of_object[i]; n != kNone && touched[n] == 0;
-         n = in_.hierarchy.parent[n])
-      touched[n] = 1;
-  }
-  std::vector<std::uint8_t> below(document_.nodes.size(), 0);
-  for (const std::uint32_t n : in_.hierarchy.order) {
-    const std::uint32_t parent = in_.hierarchy.parent[n];
-    const bool dropped = hides[n] != 0 && touched[n] != 0;
-    below[n] = dropped || (parent != kNone && below[parent] != 0) ? 1 : 0;
-    if (!dropped) continue;
-    out_.dropped.push_back(n);
-    if (!document_.nodes[n].visible) edit(n).show = true;
-  }
-  std::sort(out_.dropped.begin(), out_.dropped.end());
-  pushed_.assign(count, 0);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (retimed_[i] == 0 && scene_.objects.visibility[i].valid())
-      pushed_[i] = below[in_.source.node_of_object[i]];
-  }
-}
-
 void PatchPlanner::find_looks() {
   for (const ObjectMeshTrack& t : scene_.object_mesh_tracks) {
     if (t.track.value < in_.source.track_count) continue;
@@ -212,7 +162,7 @@ bool PatchPlanner::task_of(std::uint32_t object, Task& task) {
   task = Task();
   task.object = ObjectId(object);
   task.node = in_.source.node_of_object[object];
-  if (retimed_[object] != 0 || (!pushed_.empty() && pushed_[object] != 0)) {
+  if (retiming_.wants_track(object)) {
     task.visibility = scene_.objects.visibility[object];
     if (!task.visibility.valid()) task.visibility = always();
   }
@@ -385,13 +335,14 @@ std::uint32_t PatchPlanner::hang_below(const Task& task) {
 
 std::uint32_t PatchPlanner::add_leaf(const Task& task, std::uint32_t parent) {
   const std::uint32_t node = next_node();
+  const NodeDetail* const d = detail(task.node);
   NewNode leaf;
   leaf.kind = NewNode::Kind::leaf;
   leaf.name = wish(name_of(task.object) + "/visible");
   leaf.object = task.object;
   leaf.stands_for = task.node;
+  if (d != nullptr && document_.ours && d->stands_for != kNone) leaf.stands_for = d->stands_for;
   leaf.pointer = by_pointer() && task.visibility.valid();
-  const NodeDetail* const d = detail(task.node);
   if (d != nullptr && document_.ours && !document_.foreign) leaf.object_index = d->object;
   if (has_looks(task.node)) {
     leaf.object_mesh = d->mesh;
@@ -448,6 +399,10 @@ void PatchPlanner::apply(const Task& task) {
         "'" + reading::printable(name_of(task.object)) +
             "' is one of many instances of a node (EXT_mesh_gpu_instancing): they must become nodes first");
   }
+  if (d != nullptr && document_.ours && d->look != kNone && !document_.foreign) {
+    reject(at, "'" + reading::printable(name_of(task.object)) +
+                   "' is drawn by several nodes, a look each: write its scene with --layout nodes first");
+  }
   if (node.skinned) check_skin(task, at);
   if (has_looks(task.node) && (task.mesh_track.valid() || task.mesh_changes))
     reject(at, "'" + reading::printable(name_of(task.object)) + "' already changes its mesh over time");
@@ -458,10 +413,11 @@ void PatchPlanner::apply(const Task& task) {
   const bool leaf = below || (task.visibility.valid() && (!alone || (by_scale() && !scale_possible(task)))) ||
                     (!task.looks.empty() && node.odd_extras);
   const bool moves_mesh = leaf || !task.looks.empty();
-  if (moves_mesh && (in_.uses.of_node[task.node] & NodeUses::kWeights) != 0) {
-    reject(at, "the file animates the morph weights of '" + reading::printable(name_of(task.object)) +
+  if (moves_mesh && (in_.uses.of_node[task.node] & NodeUses::kWeightsPointer) != 0) {
+    reject(at, "a pointer animates the morph weights of '" + reading::printable(name_of(task.object)) +
                    "', and its mesh would have to go to another node");
   }
+  if (moves_mesh && (in_.uses.of_node[task.node] & NodeUses::kWeights) != 0) out_.moves_weights = true;
   std::uint32_t carrier = task.node;
   if (task.frame.valid() && !below) insert_above(task);
   if (leaf) carrier = add_leaf(task, below ? hang_below(task) : task.node);
@@ -481,17 +437,6 @@ void PatchPlanner::apply(const Task& task) {
     add_looks(task, carrier);
   } else if (task.mesh_changes && !leaf) {
     edit(task.node).mesh = task.mesh.value;
-  }
-}
-
-Path path_of(Property property) {
-  switch (property) {
-    case Property::translation:
-      return Path::translation;
-    case Property::rotation:
-      return Path::rotation;
-    default:
-      return Path::scale;
   }
 }
 
@@ -525,7 +470,7 @@ void PatchPlanner::want_frame_tracks() {
 /// A node whose times the file gave by scale may lie at rest with another scale than the one shown.
 void PatchPlanner::want_constant_scales() {
   for (const auto& scaled : in_.source.scale_visibility) {
-    if (!std::binary_search(out_.dropped.begin(), out_.dropped.end(), scaled.node)) continue;
+    if (!std::binary_search(retiming_.dropped.begin(), retiming_.dropped.end(), scaled.node)) continue;
     if (document_.nodes[scaled.node].local.scale == scaled.shown) continue;
     const bool driven = std::any_of(wants_.begin(), wants_.end(), [&](const Want& w) {
       return w.target == scaled.node && w.path == Path::scale;
@@ -621,7 +566,8 @@ NodePatch PatchPlanner::plan() {
   tracks_.track_times_s = scene_.track_times_s;
   tracks_.track_values = scene_.track_values;
   tracks_.duration_s = scene_.duration_s;
-  find_retimed();
+  retiming_ = find_retiming(in_);
+  for (const std::uint32_t node : retiming_.invisible) edit(node).show = true;
   find_looks();
   Task task;
   for (std::uint32_t i = 0; i < scene_.objects.size(); ++i) {
@@ -639,18 +585,11 @@ NodePatch PatchPlanner::plan() {
   }
   std::sort(out_.edits.begin(), out_.edits.end(),
             [](const NodeEdit& a, const NodeEdit& b) { return a.node < b.node; });
+  out_.dropped = std::move(retiming_.dropped);
   return std::move(out_);
 }
 
 }  // namespace
-
-std::span<const std::pair<std::uint32_t, std::uint32_t>> NodePatch::added_to(std::uint32_t parent) const {
-  const auto before = [](const auto& a, std::uint32_t p) { return a.first < p; };
-  const auto first = std::lower_bound(added.begin(), added.end(), parent, before);
-  auto last = first;
-  while (last != added.end() && last->first == parent) ++last;
-  return {first, last};
-}
 
 NodePatch plan_patch(const PatchInput& input, Scene& tracks) {
   return PatchPlanner(input, tracks).plan();

@@ -23,7 +23,8 @@ using reading::kNone;
 struct NodeUses {
   static constexpr std::uint8_t kJoint = 1;           ///< of a skin, or its root
   static constexpr std::uint8_t kScaleElsewhere = 2;  ///< scaled by an animation behind the first
-  static constexpr std::uint8_t kWeights = 4;         ///< morph weights are animated
+  static constexpr std::uint8_t kWeights = 4;         ///< morph weights are animated,
+  static constexpr std::uint8_t kWeightsPointer = 8;  ///< by KHR_animation_pointer
   std::vector<std::uint8_t> of_node;
 };
 
@@ -61,6 +62,12 @@ struct NodeEdit {
   ObjectId keep_name;                ///< extras.scenegen.name: the object's
 };
 
+/// Of a frame's track.
+[[nodiscard]] inline reading::Path path_of(Property property) {
+  if (property == Property::translation) return reading::Path::translation;
+  return property == Property::rotation ? reading::Path::rotation : reading::Path::scale;
+}
+
 struct PatchChannel {
   std::uint32_t sampler = 0, target = 0;
   reading::Path path = reading::Path::none;
@@ -75,12 +82,12 @@ struct NodePatch {
   /// Children of a node or roots of scenes that are replaced by another node, or taken out (kNone).
   std::unordered_map<std::uint32_t, std::uint32_t> swapped;
   bool roots_swapped = false;
+  bool moves_weights = false;          ///< animated morph weights go to other nodes with their mesh
   std::vector<PatchChannel> channels;  ///< of our animation
   AnimationPlan animation;
   std::vector<std::uint32_t>
       dropped;  ///< nodes, ascending: visibility of the file's first animation that ours replaces
   std::uint64_t first_new = 0;  ///< node index of new_nodes[0]
-  std::vector<std::string> notes;
 
   /// Children to add to `parent`.
   [[nodiscard]] std::span<const std::pair<std::uint32_t, std::uint32_t>> added_to(std::uint32_t parent) const;
@@ -94,6 +101,18 @@ struct PatchInput {
   const reading::Hierarchy& hierarchy;
   const NodeUses& uses;
 };
+
+/// Objects whose visibility is another than in the file; nodes of the file that would hide them all the same;
+/// objects below such nodes that keep their times, which the node can then no longer give them.
+struct Retiming {
+  std::vector<std::uint8_t> retimed, pushed;  ///< by object; `pushed` may be empty: none
+  std::vector<std::uint32_t> dropped;         ///< nodes, ascending: see NodePatch
+  std::vector<std::uint32_t> invisible;       ///< of them, those that are not visible at rest
+  [[nodiscard]] bool wants_track(std::uint32_t object) const {
+    return retimed[object] != 0 || (!pushed.empty() && pushed[object] != 0);
+  }
+};
+[[nodiscard]] Retiming find_retiming(const PatchInput& input);
 
 /// `tracks` gets copies of the scene's tracks, and those that are derived from them; the plan's ids point
 /// into it. Faults: something that cannot be expressed.

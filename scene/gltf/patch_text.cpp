@@ -96,7 +96,7 @@ void survey_target(Value target, const Place& at, bool first, NodeUses& uses) {
   constexpr std::string_view kWeights = "/weights";
   if (pointer.size() > kNodes.size() + kWeights.size() && pointer.starts_with(kNodes) &&
       pointer.find(kWeights) != std::string::npos)
-    mark(uses, std::strtoull(pointer.c_str() + kNodes.size(), nullptr, 10), NodeUses::kWeights);
+    mark(uses, std::strtoull(pointer.c_str() + kNodes.size(), nullptr, 10), NodeUses::kWeightsPointer);
 }
 
 void survey_animation(Value animation, const Place& at, bool first, NodeUses& uses) {

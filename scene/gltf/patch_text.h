@@ -19,6 +19,8 @@ namespace scenegen::gltf::patching {
 struct CarriedChannel {
   Span whole, sampler;
   std::uint32_t sampler_index = 0;  ///< in the file
+  Span node;                        ///< empty: the node stays
+  std::uint32_t node_index = 0;     ///< instead of it
 };
 
 struct Carried {
@@ -36,6 +38,7 @@ struct TextPatch {
   Splices splices;
   std::string animation_name = "timeline";
   Carried carried;
+  std::vector<std::string> notes;
   std::vector<MeshCompanions> companions;  ///< by node
 };
 

@@ -1,6 +1,7 @@
 #include "scene/gltf/write_names.h"
 
 #include <algorithm>
+#include <map>
 #include <vector>
 
 namespace scenegen::gltf {
@@ -13,8 +14,8 @@ void UniqueNames::settle(const NameTable& objects) {
   if (names_.empty()) return;
   // Rounds: whoever collides gets another name, until nobody does. The set holds the few names asked for, not
   // the million names of objects, which are looked up in it.
-  std::vector<std::uint32_t> suffix(names_.size(), 1);
   const NameTable wished = names_;
+  std::map<std::string_view, std::uint32_t> suffix;  // by wish: a thousand equal wishes settle in one round
   for (bool settled = false; !settled;) {
     Dedup taken;
     std::vector<std::uint32_t> owner;
@@ -42,7 +43,8 @@ void UniqueNames::settle(const NameTable& objects) {
       if (collides[i] == 0) {
         next.push_back(names_[i]);
       } else {
-        next.push_back(std::string(wished[i]) + "~" + std::to_string(++suffix[i]));
+        next.push_back(std::string(wished[i]) + "~" +
+                       std::to_string(++suffix.try_emplace(wished[i], 1).first->second));
       }
     }
     names_ = std::move(next);

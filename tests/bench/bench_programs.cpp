@@ -120,6 +120,27 @@ int main(int argc, char** argv) {
         {"generate + write 10 M, instances", generate({"--grid", more, "--layout", "instances"}), 0, 2500, 0},
         scenegen, file);
   }
+  // `scenegen animate` on a million plain nodes, beside a script that only appends channels.
+  const std::string still = std::string(argv[2]) + "/bench_still.glb";
+  ok &= measure({"generate 1 M still nodes",
+                 {"--grid", million, "--layout", "nodes", "--curve", "none", "-q", "-o", still},
+                 0,
+                 0,
+                 0},
+                scenegen, still);
+  ok &= measure({"animate 1 M nodes", {"animate", still, "-q", "-o", file}, 6.0, 2500, 0}, scenegen, file);
+  ok &= measure({"animate 1 M nodes, construct",
+                 {"animate", still, "--profile", "construct", "-q", "-o", file},
+                 0,
+                 0,
+                 0},
+                scenegen, file);
+  if (argc > 3 && std::string(argv[3]).starts_with("/")) {
+    ok &= measure(
+        {"the same by a script (Node.js)", {"--max-old-space-size=12000", NODE_PEER, still, file}, 0, 0, 0},
+        argv[3], file);
+  }
+  std::remove(still.c_str());
   std::remove(file.c_str());
   return ok ? 0 : 1;
 }

@@ -10,6 +10,7 @@
 #include "scene/validate.h"
 #include "tests/support/gltf_text.h"
 #include "tests/support/synthetic_scene.h"
+#include "tests/timeline/random_scene.h"
 
 namespace {
 
@@ -383,12 +384,46 @@ void check_damaged(std::vector<std::uint8_t> bytes) {
     FAIL("rule " << f.rule << ": " << f.where << ": " << f.what);
 }
 
+/// `good` with something wrong.
+template <class Below>
+std::vector<std::uint8_t> damaged(const std::vector<std::uint8_t>& good, const Below& below) {
+  std::vector<std::uint8_t> bad = good;
+  switch (below(4)) {
+    case 0:  // a bit
+      bad[below(bad.size())] ^= static_cast<std::uint8_t>(1U << below(8));
+      break;
+    case 1: {  // a digit of the JSON
+      const std::uint64_t from = below(bad.size());
+      for (std::uint64_t k = from; k < bad.size(); ++k) {
+        if (bad[k] < '0' || bad[k] > '9') continue;
+        bad[k] = static_cast<std::uint8_t>('0' + below(10));
+        break;
+      }
+      break;
+    }
+    case 2:  // cut off, the header made to agree
+      bad.resize(below(bad.size()));
+      if (bad.size() >= 12) {
+        const auto size = static_cast<std::uint32_t>(bad.size());
+        std::memcpy(&bad[8], &size, 4);
+      }
+      break;
+    default: {  // a piece copied over another
+      const std::uint64_t length = 1 + below(64);
+      const std::uint64_t a = below(bad.size() - length), b = below(bad.size() - length);
+      std::memmove(&bad[a], &bad[b], length);
+    }
+  }
+  return bad;
+}
+
 }  // namespace
 
 TEST_CASE("every file of ours, damaged a thousand times") {
   std::string name = (std::filesystem::temp_directory_path() / "scenegen_damage_XXXXXX").string();
   REQUIRE(mkdtemp(name.data()) != nullptr);
-  const Scene scene = testing::everything_scene();
+  const Scene everything = testing::everything_scene();
+  const Scene kinds = timeline::test::RandomScene(1).make_kinds(30, 2);  // with looks in groups
   std::uint64_t n = 0;
   const Random random(1, "damage");
   const auto below = [&](std::uint64_t most) { return random.below(n++, most); };
@@ -396,37 +431,10 @@ TEST_CASE("every file of ours, damaged a thousand times") {
        {gltf::Layout::nodes, gltf::Layout::groups, gltf::Layout::instances, gltf::Layout::merged}) {
     for (const auto visibility : {gltf::VisibilityEncoding::scale, gltf::VisibilityEncoding::pointer,
                                   gltf::VisibilityEncoding::both}) {
-      REQUIRE(gltf::write(scene, name + "/f.glb", {layout, visibility, 1}));
-      const std::vector<std::uint8_t> good = file_bytes(name + "/f.glb");
-      for (int i = 0; i < 1000; ++i) {
-        std::vector<std::uint8_t> bad = good;
-        switch (below(4)) {
-          case 0:  // a bit
-            bad[below(bad.size())] ^= static_cast<std::uint8_t>(1U << below(8));
-            break;
-          case 1: {  // a digit of the JSON
-            const std::uint64_t from = below(bad.size());
-            for (std::uint64_t k = from; k < bad.size(); ++k) {
-              if (bad[k] < '0' || bad[k] > '9') continue;
-              bad[k] = static_cast<std::uint8_t>('0' + below(10));
-              break;
-            }
-            break;
-          }
-          case 2:  // cut off, the header made to agree
-            bad.resize(below(bad.size()));
-            if (bad.size() >= 12) {
-              const auto size = static_cast<std::uint32_t>(bad.size());
-              std::memcpy(&bad[8], &size, 4);
-            }
-            break;
-          default: {  // a piece copied over another
-            const std::uint64_t length = 1 + below(64);
-            const std::uint64_t a = below(bad.size() - length), b = below(bad.size() - length);
-            std::memmove(&bad[a], &bad[b], length);
-          }
-        }
-        check_damaged(std::move(bad));
+      for (const Scene* const scene : {&everything, &kinds}) {
+        REQUIRE(gltf::write(*scene, name + "/f.glb", {layout, visibility, 1}));
+        const std::vector<std::uint8_t> good = file_bytes(name + "/f.glb");
+        for (int i = 0; i < 1000; ++i) check_damaged(damaged(good, below));
       }
     }
   }

@@ -52,7 +52,7 @@ const Case kWrongCalls[] = {
     {"--grid 2x2 stray", kUsage, "unexpected argument 'stray'"},
     {"--windows yes", kUsage, "--windows: unknown value 'yes' (one of: on, off)"},
     {"--layout node", kUsage,
-     "--layout: unknown value 'node' (did you mean 'nodes'? one of: auto, nodes, groups, instances)"},
+     "--layout: unknown value 'node' (did you mean 'nodes'? one of: auto, nodes, groups, instances, merged)"},
     {"--visibility none", kUsage, "~--visibility: unknown value 'none' ("},
     {"--format xml", kUsage, "--format: unknown value 'xml' (one of: table, json, csv)"},
     {"--order +x+y", kUsage, "~--order: unknown value '+x+y' ("},
