@@ -520,7 +520,7 @@ void ObjectBuilder::add_names() {
       document_.ignored.add(at, "the table of object names is damaged (" + fault.error.what + ")");
     }
   }
-  // Names that objects have whatever their nodes are called (docs/FORMAT.md 8) are theirs before others ask.
+  // Names that objects have whatever their nodes are called (docs/FORMAT.md 9) are theirs before others ask.
   for (std::uint32_t node = 0; node < flags_.size() && document_.ours; ++node) {
     if ((flags_[node] & kUsed) == 0 || !is_object(node) || instanced(node)) continue;
     const NodeDetail* const d = detail(node);

@@ -9,7 +9,6 @@ namespace scenegen::gltf::patching {
 
 using reading::Path;
 using reading::Place;
-using reading::reject;
 using reading::Value;
 
 namespace {

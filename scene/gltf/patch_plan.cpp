@@ -59,6 +59,10 @@ class PatchPlanner {
     const NodeDetail* const d = detail(node);
     return document_.ours && d != nullptr && d->mesh != kNone && document_.nodes[node].mesh == kNone;
   }
+  /// One of several nodes that draw an object of ours, a look each.
+  [[nodiscard]] bool is_group_look(const NodeDetail& d) const {
+    return document_.ours && !document_.foreign && d.look != kNone;
+  }
   [[nodiscard]] bool by_scale() const { return in_.options.visibility != VisibilityEncoding::pointer; }
   [[nodiscard]] bool by_pointer() const { return in_.options.visibility != VisibilityEncoding::scale; }
   [[nodiscard]] std::uint32_t next_node() const {
@@ -121,6 +125,9 @@ class PatchPlanner {
 };
 
 void PatchPlanner::check_counts() const {
+  if (!document_.instance_sets.empty())
+    reject(root_,
+           "a file of layout merged, whose objects share nodes: write its scene with --layout nodes first");
   if (scene_.objects.size() == in_.source.node_of_object.size() && scene_.frames.size() >= old_frames_ &&
       scene_.tracks.size() >= in_.source.track_count && scene_.meshes.size() >= document_.meshes.size() &&
       scene_.materials.size() >= document_.materials.size())
@@ -183,8 +190,9 @@ bool PatchPlanner::task_of(std::uint32_t object, Task& task) {
   }
   const Node& node = document_.nodes[task.node];
   const NodeDetail* const d = detail(task.node);
+  const bool shares_node = d != nullptr && (d->instanced || is_group_look(*d));
   const std::uint32_t mesh_before = node.mesh != kNone || d == nullptr ? node.mesh : d->mesh;
-  task.mesh_changes = task.mesh.value != mesh_before;
+  task.mesh_changes = !shares_node && task.mesh.value != mesh_before;
   return task.visibility.valid() || task.frame.valid() || task.mesh_track.valid() || task.mesh_changes;
 }
 
@@ -248,11 +256,9 @@ bool PatchPlanner::scale_possible(const Task& task) const {
 void PatchPlanner::check_former_frame(const Task& task, const Place& at) const {
   const FrameId former = former_frame(task.frame);
   std::uint32_t node = task.node;
-  const auto is_frame = [&](std::uint32_t n) {
-    return former.valid() && in_.source.node_of_frame[former.value] == n;
-  };
-  while (node != kNone && !is_frame(node)) node = in_.hierarchy.parent[node];
-  if (former.valid() && node == kNone)
+  if (!former.valid()) return;
+  while (node != kNone && node != in_.source.node_of_frame[former.value]) node = in_.hierarchy.parent[node];
+  if (node == kNone)
     reject(at, "the new frame of '" + reading::printable(name_of(task.object)) +
                    "' does not hang on the frame that it had");
 }
@@ -393,19 +399,14 @@ void PatchPlanner::apply(const Task& task) {
   const Place at = nodes_.at(task.node);
   const Node& node = document_.nodes[task.node];
   const NodeDetail* const d = detail(task.node);
-  if (d != nullptr && d->instanced) {
-    reject(
-        at,
-        "'" + reading::printable(name_of(task.object)) +
-            "' is one of many instances of a node (EXT_mesh_gpu_instancing): they must become nodes first");
-  }
-  if (d != nullptr && document_.ours && d->look != kNone && !document_.foreign) {
-    reject(at, "'" + reading::printable(name_of(task.object)) +
-                   "' is drawn by several nodes, a look each: write its scene with --layout nodes first");
-  }
+  const std::string who = "'" + reading::printable(name_of(task.object));
+  if (d != nullptr && d->instanced)
+    reject(at, who + "' shares its node with others (EXT_mesh_gpu_instancing): they must become nodes first");
+  if (d != nullptr && is_group_look(*d))
+    reject(at, who + "' is drawn by several nodes, a look each: write its scene with --layout nodes first");
   if (node.skinned) check_skin(task, at);
   if (has_looks(task.node) && (task.mesh_track.valid() || task.mesh_changes))
-    reject(at, "'" + reading::printable(name_of(task.object)) + "' already changes its mesh over time");
+    reject(at, who + "' already changes its mesh over time");
   if (task.frame.valid()) check_former_frame(task, at);
 
   const bool alone = exclusive(task.node);

@@ -11,8 +11,10 @@
 
 #include "scene/gltf/patch.h"
 #include "scene/gltf/read.h"
+#include "scene/gltf/write.h"
 #include "tests/support/gltf_file.h"
 #include "tests/support/patch_sources.h"
+#include "tests/support/synthetic_scene.h"
 #include "timeline/compare.h"
 
 namespace {
@@ -121,7 +123,7 @@ void add_look(Scene& scene, ObjectId id, MaterialId material) {
       {id, scene.add_track(Property::mesh, Interpolation::step, times, values)});
 }
 
-// What patch() changes on purpose (docs/FORMAT.md 8).
+// What patch() changes on purpose (docs/FORMAT.md 9).
 const std::string kAlways =
     "/asset/generator|/nodes/[0-9]+/children|/nodes/[0-9]+/(mesh|skin|weights|matrix)";
 /// The channel of the morphed mesh follows it; two nodes are called Cube.
@@ -392,7 +394,23 @@ TEST_CASE("patch: an instance of a node cannot have times of its own") {
   REQUIRE(scene.objects.size() == 3);
   scene.objects.visibility[1] = shown_from(scene, 1.0F);
   CHECK_THAT(error_of(source, scene, folder.path("out.glb")),
-             Catch::Contains("/nodes/0") && Catch::Contains("EXT_mesh_gpu_instancing"));
+             Catch::Contains("/nodes/0") && Catch::Contains("shares its node with others"));
+}
+
+TEST_CASE("patch: layouts of ours in which objects share nodes stay as they are") {
+  const TemporaryFolder folder;
+  const Scene scene = testing::everything_scene();
+  for (const auto layout : {gltf::Layout::groups, gltf::Layout::instances}) {
+    INFO("layout " << static_cast<int>(layout));
+    REQUIRE(gltf::write(scene, folder.path("in.glb"), {layout, {}, 1}));
+    const gltf::ReadResult source = read_source(folder.path("in.glb"));
+    const auto report = gltf::patch(*source.source, source.scene, folder.path("out.glb"), {});
+    if (!report) FAIL(report.error().str());
+    check_again(source.scene, folder.path("out.glb"));
+  }
+  REQUIRE(gltf::write(scene, folder.path("in.glb"), {gltf::Layout::merged, {}, 1}));
+  const gltf::ReadResult merged = read_source(folder.path("in.glb"));
+  CHECK_THAT(error_of(merged, merged.scene, folder.path("merged.glb")), Catch::Contains("--layout nodes"));
 }
 
 TEST_CASE("patch: a picture that is missing is named as before, and said to be") {
