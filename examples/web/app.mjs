@@ -62,7 +62,8 @@ function showFile() {
   const { name, json } = state.file;
   const scenegen = json.asset?.extras?.scenegen;
   const objects = scenegen?.objects ?? (json.nodes ?? []).filter((node) => node.mesh !== undefined).length;
-  const facts = [`${objects.toLocaleString('en')} objects`, scenegen?.layout, state.duration_s > 0 ? `${state.duration_s.toFixed(1)} s` : 'static'];
+  const layout = scenegen?.layout === 'patched' ? null : scenegen?.layout;  // nodes of the program that made the model
+  const facts = [`${objects.toLocaleString('en')} objects`, layout, state.duration_s > 0 ? `${state.duration_s.toFixed(1)} s` : 'static'];
   $('#name').textContent = name;
   $('#facts').textContent = facts.filter(Boolean).join(' · ');
   document.title = `${name} – scenegen player`;

@@ -28,11 +28,11 @@ for (const test of makeCases(options.programs, path.join(options.out, 'files')))
     writeFileSync(truth, execFileSync(path.join(options.programs, 'interop_truth'), [form.file, ...test.times.map(String)], { maxBuffer: 2 ** 30 }));
     const run = spawnSync('blender', ['--background', '--factory-startup', '--python-exit-code', '1', '--python', path.join(here, 'blender_check.py'), '--', form.file, truth],
       { encoding: 'utf8', maxBuffer: 2 ** 30 });
-    const [, compared, differ] = /blender: (\d+) states compared, (\d+) differ/.exec(run.stdout) ?? [];
-    const ok = run.status === 0 && Number(compared) > 0 && Number(differ) === 0;
+    const [, compared, merged, differ] = /blender: (\d+) states compared, (\d+) objects in merged meshes, (\d+) differ/.exec(run.stdout) ?? [];
+    const ok = run.status === 0 && Number(compared) > 0 && Number(differ) === 0 && (form.layout === 'merged') === (Number(merged) > 0);
     files += 1;
     failures += ok ? 0 : 1;
-    console.log(`${ok ? 'ok  ' : 'FAIL'} ${test.name}, ${form.layout}, ${form.visibility}: ${compared ?? 'no'} states compared, ${differ ?? '?'} differ`);
+    console.log(`${ok ? 'ok  ' : 'FAIL'} ${test.name}, ${form.layout}, ${form.visibility}: ${compared ?? 'no'} states compared, ${merged ?? '?'} objects in merged meshes, ${differ ?? '?'} differ`);
     if (!ok) console.log(run.stdout.split('\n').slice(-14).join('\n'));
   }
 }

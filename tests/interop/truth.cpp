@@ -1,6 +1,7 @@
 // truth FILE TIME_S...: what our player says of a file, as JSON on stdout: names of the objects, and at every
 // time, of each visible one, the linear base colour (null where a texture or transparency makes it another)
-// and the matrix that puts it into the world, column by column.
+// and the matrix that puts it into the world, column by column. Before that, the mesh of each object and the
+// vertices of each mesh.
 #include <cstdlib>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -33,6 +34,15 @@ nlohmann::json matrix_of(const timeline::Player& player, ObjectId id) {
   return out;
 }
 
+nlohmann::json vertices_of(const Scene& scene, const Mesh& mesh) {
+  nlohmann::json out = nlohmann::json::array();
+  for (const Primitive& primitive : mesh.primitives) {
+    for (const glm::vec3& p : scene.geometries[primitive.geometry.value].positions_m)
+      out.push_back({p.x, p.y, p.z});
+  }
+  return out;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -43,8 +53,11 @@ int main(int argc, char** argv) {
   timeline::Player player(timeline::compile(scene));
   nlohmann::json out;
   out["duration_s"] = scene.duration_s;
-  for (std::size_t i = 0; i < scene.objects.size(); ++i)
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     out["objects"].push_back(std::string(scene.objects.names[i]));
+    out["meshes"].push_back(scene.objects.mesh[i].value);
+  }
+  for (const Mesh& mesh : scene.meshes) out["vertices"].push_back(vertices_of(scene, mesh));
   for (int i = 2; i < argc; ++i) {
     const double time_s = std::atof(argv[i]);
     player.seek(time_s);

@@ -8,31 +8,27 @@ import process from 'node:process';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
 import { openBrowser } from './browser.mjs';
-import { changeGlb } from './glb.mjs';
 
 const { values: options } = parseArgs({ options: { source: { type: 'string' }, programs: { type: 'string' }, out: { type: 'string' } } });
 const kModules = path.join(path.dirname(fileURLToPath(import.meta.url)), 'node_modules');
 const kServe = path.join(options.source, 'examples', 'web', 'serve.mjs');
-const kDays = 40;
 
 function makeFiles() {
   mkdirSync(options.out, { recursive: true });
   const file = (name) => path.join(options.out, name);
-  const common = ['--building-size', '4x4', '--floor-courses', '8', '--floors', '1', '--ground', 'off', '--cells', '4x4x4', '--interval', '0.1', '--quiet'];
-  const scenegen = (...args) => execFileSync(path.join(options.programs, 'scenegen'), [...common, ...args], { stdio: ['ignore', 'ignore', 'pipe'] });
+  const house = ['--building-size', '4x4', '--floor-courses', '8', '--floors', '1', '--ground', 'off'];
+  const run = (...args) => execFileSync(path.join(options.programs, 'scenegen'), [...args, '--quiet'], { stdio: ['ignore', 'ignore', 'pipe'] });
+  const scenegen = (...args) => run(...house, '--cells', '4x4x4', '--interval', '0.1', ...args);
   scenegen('-o', file('house.glb'));
   scenegen('--draco', '--layout', 'groups', '-o', file('draco.glb'));
   scenegen('--visibility', 'pointer', '-o', file('pointer.glb'));
-  changeGlb(file('house.glb'), file('planned.glb'), (json) => {
-    const { scenegen: extras } = json.asset.extras;
-    const end = extras.time.end;
-    const task = (id, name, type, from, to) => ({ id, name, type, start: from * end, finish: to * end });
-    extras.calendar = {
-      start: '2024-03-01', secondsPerDay: end / kDays,
-      tasks: [task('1', 'Walls', 'construct', 0, 0.5), task('2', 'Scaffold <b>', 'temporary', 0.25, 1), task('3', 'Nothing', 'neutral', 0.3, 0.3)],
-    };
-    return json;
-  });
+  run(...house, '--curve', 'none', '-o', file('static.glb'));
+  writeFileSync(file('plan.csv'), `id,name,start,finish,type,objects
+1,Walls,2024-03-01,2024-03-21,construct,name=*/floor_0/*
+2,Scaffold <b>,2024-03-11,2024-04-10,temporary,name=*/roof/*
+3,Nothing,2024-03-13,2024-03-13,neutral,
+`);
+  run('schedule', file('static.glb'), file('plan.csv'), '-o', file('planned.glb'));
   writeFileSync(file('broken.glb'), readFileSync(file('house.glb')).subarray(0, 3000));
   return file;
 }
@@ -128,14 +124,19 @@ async function checkCalendar(page, file) {
   assert.ok(await page.locator('#tasks').isHidden());
   await drop(page, file('planned.glb'), 'planned.glb');
   assert.equal(await page.locator('#name').textContent(), 'planned.glb');
-  const end = await page.evaluate(() => window.scenegenPlayer.state.duration_s);
-  const at = async (share) => {
-    await seek(page, share * end);
+  const at = async (days) => {  // a second is a day
+    await seek(page, days);
     return { date: await page.locator('#date').textContent(), tasks: await page.locator('#tasks b').allTextContents() };
   };
-  assert.deepEqual(await at(0.1), { date: 'Tue, Mar 5, 2024', tasks: ['Walls'] });
-  assert.deepEqual(await at(0.4), { date: 'Sun, Mar 17, 2024', tasks: ['Walls', 'Scaffold <b>'] });
-  assert.deepEqual(await at(0.9), { date: 'Sat, Apr 6, 2024', tasks: ['Scaffold <b>'] });
+  assert.deepEqual(await at(4.5), { date: 'Tue, Mar 5, 2024', tasks: ['Walls'] });
+  assert.deepEqual(await at(12.5), { date: 'Wed, Mar 13, 2024', tasks: ['Walls', 'Scaffold <b>', 'Nothing'] });
+  assert.deepEqual(await at(20.5), { date: 'Thu, Mar 21, 2024', tasks: ['Walls', 'Scaffold <b>'] }, 'the last day of the walls');
+  assert.deepEqual(await at(21.5), { date: 'Fri, Mar 22, 2024', tasks: ['Scaffold <b>'] });
+  assert.deepEqual(await at(41.5), { date: 'Thu, Apr 11, 2024', tasks: [] });
+  assert.doesNotMatch(await page.locator('#facts').textContent(), /patched/);
+  const [before, walls, scaffold, after] = await coverage(page, [0, 9.5, 25, 41.5]);
+  assert.ok(before < walls && walls < scaffold && after < scaffold, `it is built by the plan: ${before}, ${walls}, ${scaffold}, ${after}`);
+  await seek(page, 15);
 }
 
 async function checkOtherFiles(page, file, plain) {

@@ -212,8 +212,10 @@ void add_color_row(Grid& grid) {
 }
 
 bool write_all(const Scene& scene, const std::filesystem::path& folder, const std::string& name) {
-  const std::pair<Layout, const char*> layouts[] = {
-      {Layout::nodes, "nodes"}, {Layout::groups, "groups"}, {Layout::instances, "instances"}};
+  const std::pair<Layout, const char*> layouts[] = {{Layout::nodes, "nodes"},
+                                                    {Layout::groups, "groups"},
+                                                    {Layout::instances, "instances"},
+                                                    {Layout::merged, "merged"}};
   const std::pair<VisibilityEncoding, const char*> encodings[] = {{VisibilityEncoding::scale, "scale"},
                                                                   {VisibilityEncoding::pointer, "pointer"},
                                                                   {VisibilityEncoding::both, "both"}};

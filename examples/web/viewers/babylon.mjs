@@ -55,8 +55,8 @@ class BabylonViewer {
     this.sun.diffuse = new Color3(1, 0.95, 0.88);
     this.sun.intensity = 2.2;
     this.shadows = new ShadowGenerator(2048, this.sun);
+    this.shadows.bias = 0.001;  // of the depth that the map covers: with less, surfaces shade themselves in stripes
     this.shadows.usePercentageCloserFiltering = true;
-    this.shadows.normalBias = 0.02;
     this.scene.imageProcessingConfiguration.toneMappingEnabled = true;
     this.scene.imageProcessingConfiguration.toneMappingType = 2;  // Khronos PBR neutral, as in three.mjs
   }
