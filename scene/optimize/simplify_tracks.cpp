@@ -167,20 +167,23 @@ void simplify_tracks(Scene& scene, OptimizeReport& report) {
   }
   settle_constants(scene, curves);
   const std::vector<std::uint8_t> used_before = std::exchange(used, used_tracks(scene));
+  std::vector<std::uint32_t> in_use;  // the others would all have one hash
+  for (std::uint32_t i = 0; i < used.size(); ++i) {
+    if (used[i] != 0) in_use.push_back(i);
+  }
   const auto first = first_equals(
-      curves.size(), [&](std::uint32_t i) { return used[i] != 0 ? hash_of(curves[i]) : 0; },
-      [&](std::uint32_t a, std::uint32_t b) {
-        return used[a] != 0 && used[b] != 0 && equal(curves[a], curves[b]);
-      });
+      static_cast<std::uint32_t>(in_use.size()), [&](std::uint32_t k) { return hash_of(curves[in_use[k]]); },
+      [&](std::uint32_t a, std::uint32_t b) { return equal(curves[in_use[a]], curves[in_use[b]]); });
   scene.tracks.clear();
   scene.track_times_s.clear();
   scene.track_values.clear();
   std::vector<std::uint32_t> moved(curves.size(), kNone);
-  for (std::size_t i = 0; i < curves.size(); ++i) {
+  for (std::size_t i = 0; i < curves.size(); ++i)
     report.constant_tracks += used_before[i] != 0 && used[i] == 0 ? 1 : 0;
-    if (used[i] == 0) continue;
-    if (first[i] != i) {
-      moved[i] = moved[first[i]];
+  for (std::size_t k = 0; k < in_use.size(); ++k) {
+    const std::uint32_t i = in_use[k];
+    if (first[k] != k) {
+      moved[i] = moved[in_use[first[k]]];
       ++report.equal_tracks;
       continue;
     }
