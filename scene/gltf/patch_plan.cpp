@@ -470,13 +470,13 @@ void PatchPlanner::want_frame_tracks() {
 
 /// A node whose times the file gave by scale may lie at rest with another scale than the one shown.
 void PatchPlanner::want_constant_scales() {
+  std::vector<bool> driven(document_.nodes.size());
+  for (const Want& want : wants_) {
+    if (want.path == Path::scale && want.target < driven.size()) driven[want.target] = true;
+  }
   for (const auto& scaled : in_.source.scale_visibility) {
     if (!std::binary_search(retiming_.dropped.begin(), retiming_.dropped.end(), scaled.node)) continue;
-    if (document_.nodes[scaled.node].local.scale == scaled.shown) continue;
-    const bool driven = std::any_of(wants_.begin(), wants_.end(), [&](const Want& w) {
-      return w.target == scaled.node && w.path == Path::scale;
-    });
-    if (driven) continue;
+    if (driven[scaled.node] || document_.nodes[scaled.node].local.scale == scaled.shown) continue;
     wants_.push_back({Want::Kind::scale, Path::scale, scaled.node, always(), {}, scaled.shown, 1.0F});
   }
 }
