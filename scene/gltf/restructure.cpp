@@ -247,7 +247,8 @@ const Restructurer::MeshSplit& Restructurer::split_mesh(std::uint32_t index) {
   split.known = true;
   const auto parts = parts_of(index);
   if (!parts) return split;
-  const Json whole = document_["meshes"][index];
+  Json whole = document_["meshes"][index];
+  const Json pieces = std::move(whole["primitives"]);  // so that parts do not begin as copies of all of them
   for (std::size_t k = 0; k < parts->size(); ++k) {
     Json part = whole;
     if (whole.contains("name") && whole["name"].is_string())
@@ -256,7 +257,7 @@ const Restructurer::MeshSplit& Restructurer::split_mesh(std::uint32_t index) {
     for (const PartPiece& piece : (*parts)[k].pieces) {
       const Geometry& geometry =
           scene_.geometries[scene_.meshes[index].primitives[piece.primitive].geometry.value];
-      primitives.push_back(cut(whole["primitives"][piece.primitive], geometry, piece));
+      primitives.push_back(cut(pieces[piece.primitive], geometry, piece));
     }
     part["primitives"] = std::move(primitives);
     document_["meshes"].push_back(std::move(part));
