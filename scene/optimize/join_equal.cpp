@@ -1,3 +1,6 @@
+#include <bit>
+#include <utility>
+
 #include "scene/optimize/equal.h"
 #include "scene/optimize/steps.h"
 
@@ -55,11 +58,27 @@ void join_textures(Scene& scene, OptimizeReport& report) {
   }
 }
 
-/// Without the name, which is not seen.
-Material nameless(const Material& material) {
-  Material out = material;
-  out.name.clear();
-  return out;
+/// Of all that a material compares but its name.
+std::uint64_t hash_of(const Material& m) {
+  ContentHash hash;
+  const auto mix = [&](float value) { hash.mix(std::bit_cast<std::uint32_t>(value + 0.0F)); };  // -0 is 0
+  const auto add = [&](const TextureUse& use) {
+    hash.mix(use.texture.value);
+    hash.mix(use.texcoord);
+    for (const float v : {use.strength, use.uv_offset.x, use.uv_offset.y, use.uv_rotation_rad, use.uv_scale.x,
+                          use.uv_scale.y})
+      mix(v);
+  };
+  for (const float v : {m.base_color.x, m.base_color.y, m.base_color.z, m.base_color.w, m.metallic,
+                        m.roughness, m.emissive.x, m.emissive.y, m.emissive.z, m.alpha_cutoff})
+    mix(v);
+  hash.mix(static_cast<std::uint64_t>(m.alpha_mode) << 2 | (m.double_sided ? 2U : 0U) | (m.unlit ? 1U : 0U));
+  add(m.base_color_texture);
+  add(m.metallic_roughness_texture);
+  add(m.normal_texture);
+  add(m.occlusion_texture);
+  add(m.emissive_texture);
+  return hash.value();
 }
 
 void join_materials(Scene& scene, OptimizeReport& report) {
@@ -72,21 +91,21 @@ void join_materials(Scene& scene, OptimizeReport& report) {
     const bool base = scene.tracks[t.track.value].property == Property::base_color;
     (base ? tracks[t.material.value].base_color : tracks[t.material.value].emissive) = t.track;
   }
+  std::vector<std::string> names;  // laid aside: they are not seen
+  for (Material& m : scene.materials) names.push_back(std::exchange(m.name, {}));
   const auto first = first_equals(
       scene.materials.size(),
       [&](std::uint32_t i) {
-        const Material& m = scene.materials[i];
         ContentHash hash;
-        hash.add_bytes(&m.base_color, sizeof m.base_color);
-        hash.add_bytes(&m.emissive, sizeof m.emissive);
-        hash.mix(m.base_color_texture.texture.value);
+        hash.mix(hash_of(scene.materials[i]));
         hash.mix(tracks[i].base_color.value);
         hash.mix(tracks[i].emissive.value);
         return hash.value();
       },
       [&](std::uint32_t a, std::uint32_t b) {
-        return tracks[a] == tracks[b] && nameless(scene.materials[a]) == nameless(scene.materials[b]);
+        return tracks[a] == tracks[b] && scene.materials[a] == scene.materials[b];
       });
+  for (std::size_t i = 0; i < names.size(); ++i) scene.materials[i].name = std::move(names[i]);
   const auto moved = join(scene.materials, first, report.equal_materials);
   for (Mesh& mesh : scene.meshes) {
     for (Primitive& p : mesh.primitives) renumber(p.material, moved);
@@ -108,7 +127,9 @@ void join_geometries(Scene& scene, OptimizeReport& report) {
         ContentHash hash;
         hash.add(g.positions_m);
         hash.add(g.normals);
-        hash.add(g.texcoords[0]);
+        hash.add(g.tangents);
+        for (const auto& texcoords : g.texcoords) hash.add(texcoords);
+        hash.add(g.colors);
         hash.add(g.indices);
         return hash.value();
       },
