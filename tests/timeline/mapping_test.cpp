@@ -226,6 +226,30 @@ TEST_CASE("a mapping is saved and found again in a newer model") {
   }
 }
 
+TEST_CASE("a saved mapping keeps the order of the plan, and identifiers that are a task's alone") {
+  Site site(R"(,"scenes":[{"nodes":[0,5]}],"nodes":[{"name":"s","extras":{"guid":"S"},"children":[1,2,3,4]},
+    {"name":"a","mesh":0},{"name":"b","mesh":0},{"name":"c","mesh":0},{"name":"d","mesh":0},
+    {"name":"e","mesh":0,"extras":{"guid":"E"}}])");
+  const auto saved_guids = [&](const std::string& rows) {
+    const Plan plan = site.plan(rows);
+    const std::string json = write_mapping(plan, site.map(plan), site.scene(), site.facts());
+    const std::size_t two = json.find("\"2\": {");
+    CHECK(two < json.find("\"1\": {"));
+    const auto saved = parse_mapping(json, "m.json");
+    REQUIRE(saved);
+    std::string out;
+    for (const SavedMapping::Entry& task : saved->tasks) {
+      out += task.task_id + ":";
+      for (const SavedMapping::Object& object : task.objects) out += " " + object.name + "=" + object.guid;
+      out += ";";
+    }
+    return out;
+  };
+  const std::string day = std::string(",x,") + kDay1 + ",,";
+  CHECK(saved_guids("2" + day + "a;b;c;d,,\n1" + day + "e;a,,\n") == "1: a= e=E;2: a=S b=S c=S d=S;");
+  CHECK(saved_guids("2" + day + "a;c;d,,\n1" + day + "e;b,,\n") == "1: b= e=E;2: a= c= d=;");
+}
+
 TEST_CASE("objects of a task follow each other along the curve, within its span") {
   Site site;
   const Plan plan = site.plan(
