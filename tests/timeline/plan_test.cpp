@@ -316,6 +316,23 @@ TEST_CASE("MS Project XML is read by its namespace and needs only UIDs") {
   CHECK(plan.tasks[3].name == "3");
 }
 
+TEST_CASE("MS Project XML: elapsed durations are clock time, estimated or not") {
+  const auto finish = [](const std::string& format) {
+    return dates(
+        good(xml("<Task><UID>1</UID><Start>2024-03-04T08:00:00</Start>"
+                 "<Duration>PT48H0M0S</Duration><DurationFormat>" +
+                 format + "</DurationFormat></Task>")));
+  };
+  for (const char* const format : {"4", "6", "8", "10", "12", "36", "38", "40", "42", "44"}) {
+    INFO(format);
+    CHECK(finish(format) == "1 2024-03-04T08:00:00 2024-03-06T08:00:00");
+  }
+  for (const char* const format : {"3", "5", "7", "9", "11", "21", "35", "37", "39", "41", "43", "53"}) {
+    INFO(format);  // of 8 working hours a day
+    CHECK(finish(format) == "1 2024-03-04T08:00:00 2024-03-10T08:00:00");
+  }
+}
+
 TEST_CASE("MS Project XML: prefixes, foreign elements, custom fields, other encodings") {
   const std::string prefixed =
       R"(<p:Project xmlns:p="urn:x" xmlns:q="urn:y"><p:MinutesPerDay>600</p:MinutesPerDay>

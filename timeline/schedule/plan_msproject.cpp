@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <pugixml.hpp>
+#include <unordered_map>
 
 #include "scene/limits.h"
 #include "timeline/schedule/plan_build.h"
@@ -27,17 +28,38 @@ std::string_view local_name(const pugi::xml_node& node) {
   return colon == std::string_view::npos ? name : name.substr(colon + 1);
 }
 
-/// The namespace that the prefix of an element's name stands for; "" where none is declared.
-std::string_view namespace_of(const pugi::xml_node& node) {
-  const std::string_view name = node.name();
-  const std::size_t colon = name.find(':');
-  const std::string attribute =
-      colon == std::string_view::npos ? "xmlns" : "xmlns:" + std::string(name.substr(0, colon));
-  for (pugi::xml_node up = node; up.type() == pugi::node_element; up = up.parent()) {
-    if (const pugi::xml_attribute found = up.attribute(attribute.c_str())) return found.value();
+/// What prefixes stand for. Attributes of an element are walked once, however many elements are below it.
+class Namespaces {
+ public:
+  /// The namespace that the prefix of an element's name stands for; "" where none is declared.
+  std::string_view of(const pugi::xml_node& node) {
+    const std::string_view name = node.name();
+    const std::size_t colon = name.find(':');
+    const std::string_view prefix = colon == std::string_view::npos ? "" : name.substr(0, colon);
+    for (pugi::xml_node up = node; up.type() == pugi::node_element; up = up.parent()) {
+      if (!up.first_attribute()) continue;
+      const Declared& declared = declared_by(up);
+      if (const auto found = declared.find(prefix); found != declared.end()) return found->second;
+    }
+    return {};
   }
-  return {};
-}
+
+ private:
+  using Declared = std::map<std::string_view, std::string_view>;  ///< by prefix
+
+  const Declared& declared_by(const pugi::xml_node& node) {
+    const auto [at, fresh] = by_node_.try_emplace(node.internal_object());
+    if (!fresh) return at->second;
+    for (const pugi::xml_attribute& attribute : node.attributes()) {
+      const std::string_view name = attribute.name();
+      if (name == "xmlns") at->second.emplace("", attribute.value());
+      if (name.starts_with("xmlns:")) at->second.emplace(name.substr(6), attribute.value());
+    }
+    return at->second;
+  }
+
+  std::unordered_map<const void*, Declared> by_node_;
+};
 
 class ProjectReader {
  public:
@@ -61,7 +83,8 @@ class ProjectReader {
   void find_lines();
   [[nodiscard]] std::string place(const pugi::xml_node& node) const;
   [[nodiscard]] bool is(const pugi::xml_node& node, std::string_view name) const {
-    return node.type() == pugi::node_element && local_name(node) == name && namespace_of(node) == namespace_;
+    return node.type() == pugi::node_element && local_name(node) == name &&
+           namespaces_.of(node) == namespace_;
   }
   [[nodiscard]] pugi::xml_node child(const pugi::xml_node& node, std::string_view name) const {
     return node.find_child([&](const pugi::xml_node& c) { return is(c, name); });
@@ -86,6 +109,7 @@ class ProjectReader {
   std::string_view bytes_;
   const std::string& name_;
   const PlanOptions& options_;
+  mutable Namespaces namespaces_;  ///< remembers
   std::string namespace_;
   bool has_lines_ = false;
   std::vector<std::size_t> line_ends_;
@@ -142,10 +166,10 @@ std::optional<CivilSeconds> ProjectReader::date(const pugi::xml_node& node, std:
   return moment->at_s;
 }
 
-/// Working time becomes calendar time: MinutesPerDay of work are a day. Elapsed formats (4, 6, 8, … 12) are
-/// clock time already.
+/// Working time becomes calendar time: MinutesPerDay of work are a day. Elapsed formats (4, 6, 8, 10, 12; the
+/// same, estimated: 36, 38, 40, 42, 44) are clock time already.
 CivilSeconds ProjectReader::working(double minutes, std::int64_t format, const std::string& where) const {
-  const bool elapsed = format >= 4 && format <= 12 && format % 2 == 0;
+  const bool elapsed = ((format >= 4 && format <= 12) || (format >= 36 && format <= 44)) && format % 2 == 0;
   const double days = minutes / (elapsed ? 1440.0 : minutes_per_day_);
   auto out = whole_seconds(days * static_cast<double>(kDay), std::to_string(minutes) + " minutes");
   if (!out) reject(where, out.error().what);
@@ -314,7 +338,7 @@ Plan ProjectReader::read() {
     reject(place(project), "the root element is " + in_quotes(local_name(project)) +
                                "; wanted the 'Project' of MS Project XML");
   }
-  namespace_ = namespace_of(project);
+  namespace_ = namespaces_.of(project);
   minutes_per_day_ = static_cast<double>(whole(project, "MinutesPerDay", 480, place(project) + ": Project"));
   if (minutes_per_day_ < 1 || minutes_per_day_ > 1440)
     reject(place(project) + ": Project", "MinutesPerDay goes from 1 to 1440");
