@@ -155,18 +155,18 @@ std::string Table::str(Format format) const {
     return out;
   }
   std::vector<std::size_t> widths;
+  std::vector<bool> right;  // by column: it holds numbers
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     std::size_t width = display_width(columns_[i].title);
     for (const auto& values : rows_) width = std::max(width, display_width(table_cell(values[i])));
     widths.push_back(width);
+    right.push_back(
+        std::any_of(rows_.begin(), rows_.end(), [i](const auto& values) { return values[i].is_number(); }));
   }
-  const auto right = [&](std::size_t i) {
-    return std::any_of(rows_.begin(), rows_.end(), [i](const auto& values) { return values[i].is_number(); });
-  };
   const auto append_line = [&](const auto& cell) {
     std::string line;
     for (std::size_t i = 0; i < columns_.size(); ++i) {
-      line += (i == 0 ? "" : "  ") + padded(cell(i), widths[i], right(i));
+      line += (i == 0 ? "" : "  ") + padded(cell(i), widths[i], right[i]);
     }
     line.erase(line.find_last_not_of(' ') + 1);
     out += line + "\n";
