@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 
 #include "scene/gltf/write_files.h"
 
@@ -236,6 +237,49 @@ Result<void> check_output_file(const std::string& path) {
   if (!S_ISDIR(status.st_mode)) return cannot_write(path, ENOTDIR);
   if (path.ends_with('/')) return cannot_write(path, EISDIR);
   if (!special_file(path) && ::access(folder.c_str(), W_OK | X_OK) != 0) return cannot_write(path, errno);
+  return {};
+}
+
+namespace {
+
+/// Empty for what is no file.
+std::filesystem::path real_path(const std::string& path) {
+  if (path.empty() || path == "-" || special_file(path)) return {};
+  std::error_code failed;  // then nothing can be written there, which is said elsewhere
+  return std::filesystem::weakly_canonical(std::filesystem::absolute(path, failed), failed);
+}
+
+bool same_file(const NamedPath& a, const NamedPath& b) {
+  const std::filesystem::path real = real_path(a.path);
+  return !real.empty() && real == real_path(b.path);
+}
+
+}  // namespace
+
+Result<void> check_distinct_files(const std::vector<NamedPath>& outputs,
+                                  const std::vector<NamedPath>& inputs) {
+  std::vector<NamedPath> before;
+  for (const NamedPath& output : outputs) {
+    std::vector<NamedPath> writes{output};
+    if (const std::filesystem::path path(output.path); path.extension() == ".gltf")
+      writes.push_back({output.option, std::filesystem::path(path).replace_extension(".bin").string()});
+    for (const NamedPath& file : writes) {
+      for (const NamedPath& other : before) {
+        if (file.path == "-" && other.path == "-")
+          return fail(ErrorKind::usage, file.option,
+                      "cannot be used with " + other.option + " -: stdout takes one of them");
+        if (same_file(file, other))
+          return fail(ErrorKind::usage, file.option,
+                      "would overwrite '" + other.path + "', which " + other.option + " writes");
+      }
+      for (const NamedPath& input : inputs) {
+        if (same_file(file, input))
+          return fail(ErrorKind::usage, file.option,
+                      "would overwrite '" + input.path + "', which is read (" + input.option + ")");
+      }
+    }
+    before.insert(before.end(), writes.begin(), writes.end());
+  }
   return {};
 }
 

@@ -77,6 +77,14 @@ class Table {
 /// Whether a file can be made at `path`, before the long work: not a folder, its folder is there and
 /// writable.
 [[nodiscard]] Result<void> check_output_file(const std::string& path);
+/// A path and the option or argument that gave it; an empty path is no file.
+struct NamedPath {
+  std::string option, path;
+};
+/// Whether no output would overwrite an input or another output, before the long work. Paths are the same
+/// when they lead to the same place; devices and pipes take what comes.
+[[nodiscard]] Result<void> check_distinct_files(const std::vector<NamedPath>& outputs,
+                                                const std::vector<NamedPath>& inputs);
 
 [[nodiscard]] bool terminal(int file_descriptor);
 /// A terminal that wants colours (https://no-color.org).

@@ -201,6 +201,12 @@ Result<void> check(const AnimateRequest& r, const Options& options) {
     }
     if (auto writable = check_scene_output(r.output); !writable) return writable;
   }
+  // The model itself may be replaced: it is read before that.
+  if (auto apart =
+          check_distinct_files({{"--output", r.dry_run ? "" : r.output}, {"--report", r.report}}, {});
+      !apart)
+    return apart;
+  if (auto apart = check_distinct_files({{"--report", r.report}}, {{"MODEL", r.input}}); !apart) return apart;
   return r.report.empty() || r.report == "-" ? Result<void>() : check_output_file(r.report);
 }
 

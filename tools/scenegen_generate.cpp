@@ -29,6 +29,11 @@ Result<void> check(const GenerateRequest& r, const Options& options) {
   if (!r.dry_run) {
     if (auto writable = check_scene_output(r.output); !writable) return writable;
   }
+  if (auto apart = check_distinct_files(
+          {{"--output", r.dry_run ? "" : r.output}, {"--report", r.report}},
+          {{"--building-model", r.town.building_model}, {"--extra-model", r.town.extra_model}});
+      !apart)
+    return apart;
   if (r.report.empty() || r.report == "-") return {};
   return check_output_file(r.report);
 }

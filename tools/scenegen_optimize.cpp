@@ -55,6 +55,12 @@ Result<void> check(const OptimizeRequest& r, const Options& options) {
   if (!r.dry_run) {
     if (auto writable = check_scene_output(r.output); !writable) return writable;
   }
+  // The model itself may be replaced: it is read before that.
+  if (auto apart =
+          check_distinct_files({{"--output", r.dry_run ? "" : r.output}, {"--report", r.report}}, {});
+      !apart)
+    return apart;
+  if (auto apart = check_distinct_files({{"--report", r.report}}, {{"FILE", r.input}}); !apart) return apart;
   return r.report.empty() || r.report == "-" ? Result<void>() : check_output_file(r.report);
 }
 

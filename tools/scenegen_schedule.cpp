@@ -336,7 +336,7 @@ Result<void> say(const ScheduleRequest& r, const Scheduled& made, const std::vec
   if (r.format == Format::csv) return write_stdout(mapping_table(made, r.format));
   if (r.quiet) return {};
   const std::string text = (r.dry_run ? mapping_table(made, r.format) : "") + finished_line(r, made);
-  const bool stdout_taken = r.report == "-" || (r.output == "-" && !r.dry_run);
+  const bool stdout_taken = r.report == "-" || r.save_mapping == "-" || (r.output == "-" && !r.dry_run);
   if (!stdout_taken) return write_stdout(text);
   (void)std::fputs(text.c_str(), stderr);
   return {};

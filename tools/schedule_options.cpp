@@ -163,6 +163,8 @@ std::vector<Conflict> schedule_conflicts(const ScheduleRequest& r) {
   }
   if (r.report == "-")
     out.push_back({"--format", "cannot be used with --report -, which puts the report on stdout"});
+  if (r.save_mapping == "-")
+    out.push_back({"--format", "cannot be used with --save-mapping -, which puts the mapping on stdout"});
   return out;
 }
 
@@ -183,6 +185,20 @@ Result<void> check_schedule(const ScheduleRequest& r, const Options& options) {
                       (r.model == "-" ? "out" : stem + "_scheduled") + ".glb)");
     }
     if (auto writable = check_scene_output(r.output); !writable) return writable;
+  }
+  // The model itself may be replaced, and a mapping brought up to date: they are read before that.
+  const std::string output = r.dry_run ? "" : r.output;
+  if (auto apart = check_distinct_files(
+          {{"--output", output}, {"--report", r.report}, {"--save-mapping", r.save_mapping}},
+          {{"PLAN", r.plan}});
+      !apart)
+    return apart;
+  if (auto apart = check_distinct_files({{"--report", r.report}, {"--save-mapping", r.save_mapping}},
+                                        {{"MODEL", r.model}});
+      !apart)
+    return apart;
+  for (const NamedPath& file : {NamedPath{"--output", output}, NamedPath{"--report", r.report}}) {
+    if (auto apart = check_distinct_files({file}, {{"--mapping", r.mapping}}); !apart) return apart;
   }
   for (const std::string& path : {r.report, r.save_mapping}) {
     if (path.empty() || path == "-") continue;

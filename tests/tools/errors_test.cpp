@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <csignal>
+#include <filesystem>
 
 #include "tests/tools/process.h"
 
@@ -212,6 +213,62 @@ TEST_CASE("a reader that went away is an error, not a signal") {
   closed.stdout_closed_pipe = true;
   for (const char* arguments : {"-o - -q", "--help", "--dry-run -q --format json"}) {
     check_case({arguments, kIo, "~Broken pipe"}, run(SCENEGEN_PROGRAM, words(arguments), closed));
+  }
+}
+
+TEST_CASE("no output overwrites an input or another output") {
+  const TemporaryFolder folder;
+  const std::string plan = "id,start,finish,objects\n1,2024-03-01,2024-03-02,name=*\n";
+  REQUIRE(run(SCENEGEN_PROGRAM, words("--curve none -o model.glb -q"), {.folder = folder.path()}).code == 0);
+  write_file(folder.file("plan.csv"), plan);
+  std::filesystem::create_symlink("plan.csv", folder.file("link.csv"));
+  const std::string model = read_file(folder.file("model.glb"));
+  const auto entries = folder.entries();
+  const std::string schedule = "schedule model.glb plan.csv ";
+  const std::vector<std::pair<std::string, std::string>> wrong{
+      {"-o a.glb --report ./a.glb", "--report: would overwrite 'a.glb', which --output writes"},
+      {"-o a.gltf --report a.bin", "--report: would overwrite 'a.bin', which --output writes"},
+      {"-o model.glb --building-model model.glb",
+       "--output: would overwrite 'model.glb', which is read (--building-model)"},
+      {"animate model.glb -o a.glb --report a.glb",
+       "--report: would overwrite 'a.glb', which --output writes"},
+      {"animate model.glb -o a.glb --report model.glb",
+       "--report: would overwrite 'model.glb', which is read (MODEL)"},
+      {"optimize model.glb -o a.glb --report ../" + std::filesystem::path(folder.path()).filename().string() +
+           "/model.glb",
+       "--report: would overwrite 'model.glb', which is read (FILE)"},
+      {"optimize model.glb -o a.glb --report a.glb",
+       "--report: would overwrite 'a.glb', which --output writes"},
+      {schedule + "-o a.glb --report link.csv", "--report: would overwrite 'plan.csv', which is read (PLAN)"},
+      {schedule + "-o a.glb --save-mapping plan.csv",
+       "--save-mapping: would overwrite 'plan.csv', which is read (PLAN)"},
+      {schedule + "-o a.glb --report m.json --save-mapping m.json",
+       "--save-mapping: would overwrite 'm.json', which --report writes"},
+      {schedule + "-o a.glb --mapping m.json --report m.json",
+       "--report: would overwrite 'm.json', which is read (--mapping)"},
+      {schedule + "-o a.glb --save-mapping model.glb",
+       "--save-mapping: would overwrite 'model.glb', which is read (MODEL)"},
+      {schedule + "-o a.glb --report - --save-mapping -",
+       "--save-mapping: cannot be used with --report -: stdout takes one of them"},
+      {schedule + "-o - --save-mapping -",
+       "--save-mapping: cannot be used with --output -: stdout takes one of them"},
+  };
+  for (const auto& [arguments, line] : wrong)
+    check_case({arguments.c_str(), kUsage, line.c_str()},
+               run(SCENEGEN_PROGRAM, words(arguments), {.folder = folder.path()}));
+  CHECK(folder.entries() == entries);
+  CHECK(read_file(folder.file("model.glb")) == model);
+  CHECK(read_file(folder.file("plan.csv")) == plan);
+  // The model itself may be replaced, a mapping brought up to date, and /dev/null takes everything.
+  for (const std::string& arguments : {schedule + "-o model.glb -q --save-mapping m.json",
+                                       schedule + "-o model.glb -q --mapping m.json --save-mapping m.json",
+                                       schedule + "-o a.glb -q --report /dev/null --save-mapping /dev/null",
+                                       std::string("optimize model.glb -o model.glb -q"),
+                                       std::string("animate model.glb -o model.glb -q")}) {
+    write_file(folder.file("model.glb"), model);
+    const ProcessResult result = run(SCENEGEN_PROGRAM, words(arguments), {.folder = folder.path()});
+    INFO(arguments << "\n" << result.err);
+    CHECK(result.code == 0);
   }
 }
 
