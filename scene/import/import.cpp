@@ -10,9 +10,11 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <string_view>
 
 #include "scene/gltf/write_sink.h"
 #include "scene/import/child.h"
@@ -153,6 +155,26 @@ Result<std::uint64_t> size_of_model(const std::string& path) {
   return static_cast<std::uint64_t>(status.st_size);
 }
 
+/// Assimp takes an IFC file that was cut off for a smaller model. What stands behind the end (blanks,
+/// comments, signatures) is not looked at.
+Result<void> check_ifc_is_whole(const std::string& path, std::uint64_t size) {
+  constexpr std::string_view kBegin = "ISO-10303-21;", kEnd = "END-ISO-10303-21";
+  constexpr std::uint64_t kPart = 1 << 16;
+  std::ifstream file(path, std::ios::binary);
+  const auto part = [&](std::uint64_t begin) {
+    std::string out(std::min(kPart, size), '\0');
+    file.seekg(static_cast<std::streamoff>(begin));
+    file.read(out.data(), static_cast<std::streamsize>(out.size()));
+    return out;
+  };
+  const std::string head = part(0), tail = part(size - std::min(kPart, size));
+  if (!file) return fail(ErrorKind::io, path, "cannot be read");
+  const bool step = head.find(kBegin) != std::string::npos;  // else Assimp says what is wrong
+  if (step && tail.find(kEnd) == std::string::npos)
+    return fail(ErrorKind::bad_input, path, "ends before " + std::string(kEnd) + ";: it is not whole");
+  return {};
+}
+
 Result<gltf::ReadResult> read_answer(ChildOutcome& outcome, const std::string& path) {
   const auto end = std::find(outcome.bytes.begin(), outcome.bytes.end(), '\n');
   const json header = json::parse(outcome.bytes.begin(), end, nullptr, false);
@@ -209,6 +231,9 @@ Result<gltf::ReadResult> read_model(const std::string& path, const ImportOptions
                 (extension.empty() ? "a name without an extension"
                                    : "'." + extension + "' is no model format that is read") +
                     std::string(" (glTF and what Assimp reads: .fbx .ifc .obj .dae .stl .3mf …)"));
+  }
+  if (extension == "ifc") {
+    if (auto whole = check_ifc_is_whole(path, *size); !whole) return forward_error(whole);
   }
   const ChildLimits limits = limits_for(*size);
   ChildOutcome outcome =

@@ -233,6 +233,12 @@ TEST_CASE("what cannot be read is one line") {
   check(model("invalid/malformed.obj"), ErrorKind::bad_input, "Assimp: OBJ: Invalid face index.");
   check(model("RAW/WithColor.raw"), ErrorKind::bad_input, "Assimp");  // 5.2 crashes on it
   check(model("invalid/OutOfMemory.off"), ErrorKind::bad_input, "Assimp");
+  const std::string house = file_bytes(model("IFC/AC14-FZK-Haus.ifc"));
+  const std::string cut = house.substr(0, house.size() * 2 / 3);
+  write(folder.path("cut.ifc"), cut.substr(0, cut.rfind('\n') + 1));
+  check(folder.path("cut.ifc"), ErrorKind::bad_input, "ends before END-ISO-10303-21;");
+  write(folder.path("more.ifc"), house + "/* exported on a Friday */\r\n\n");
+  CHECK(import::read_model(folder.path("more.ifc")));
   write(folder.path("text.xyzzy"), "hello");
   check(folder.path("text.xyzzy"), ErrorKind::bad_input, "'.xyzzy' is no model format that is read");
 }
