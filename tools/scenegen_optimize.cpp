@@ -102,6 +102,10 @@ Result<Optimized> run(const OptimizeRequest& r) {
                         : gltf::write(read->scene, r.output, file_options);
   if (!file) return forward_error(file);
   out.file = std::move(*file);
+  if (out.file.bytes > out.bytes_before) {
+    out.file.notes.push_back("larger than before: " + human_bytes(out.file.bytes) + " instead of " +
+                             human_bytes(out.bytes_before));
+  }
   out.seconds = stopwatch.seconds();
   return out;
 }
