@@ -129,6 +129,7 @@ TEST_CASE("the report lists what is without, what is claimed twice, and what mat
   CHECK(m.claimed_twice[0].losers == std::vector<std::uint32_t>{1});
   CHECK(m.claimed_twice[1].tasks == std::vector<std::uint32_t>{1, 3});
   CHECK(m.claimed_twice[1].losers.empty());
+  CHECK_FALSE((m.claimed_twice[0].equals || m.claimed_twice[1].equals));
 
   const auto wrong =
       map_tasks(site.plan("1,x,2024-03-01,2024-03-04,,name~(,,\n"), site.scene(), site.facts(), {});
@@ -149,6 +150,7 @@ TEST_CASE("who wins is decided again after a demolition, and equals share") {
   const auto& shared = m.claimed_twice.front();
   CHECK(shared.tasks == std::vector<std::uint32_t>{0, 1, 2, 4, 5});
   CHECK(shared.losers == std::vector<std::uint32_t>{3});
+  CHECK(shared.equals);
 }
 
 TEST_CASE("summary tasks carry objects only when asked") {

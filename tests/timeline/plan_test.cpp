@@ -146,6 +146,8 @@ TEST_CASE("types are understood as IFC and Navisworks call them") {
 TEST_CASE("a CSV plan is read whatever its columns are called and separated by") {
   const std::string wanted = "1 2024-03-01 2024-03-06; 2 2024-03-08 2024-03-09T12:00:00";
   CHECK(dates(good("id,name,start,duration,predecessors\n1,a,2024-03-01,5,\n2,b,,36h,1FS+2d\n")) == wanted);
+  CHECK(dates(good("\r\n\nid;name;start;duration;predecessors\n1;a;2024-03-01;5;\n2;b;;36h;1FS+2d\n")) ==
+        wanted);
   CHECK(dates(good(
             "\xEF\xBB\xBFTask ID;Task_Name;Planned Start;Duration;Predecessors\r\n1;a;2024-03-01;5d;\r\n\r\n"
             "2;b;;1.5;\"1fs+2 days\"")) == wanted);
@@ -234,6 +236,9 @@ TEST_CASE("CSV plans that are wrong say where and what") {
        "plan.csv: line 2, column 'predecessors': no task is called '9FS' (a predecessor is an id, alone or "
        "with FS, "
        "SS, FF or SF and a lag: 3FS+2d)"},
+      {"id,start,duration,predecessors\nA,2024-01-01,1,\nB,,1,A-2\n",
+       "plan.csv: line 3, column 'predecessors': no task is called 'A-2'; a lag stands behind FS, SS, FF or "
+       "SF: AFS-2d"},
       {"id,start,duration,predecessors\n1,2024-01-01,1,1SS\n",
        "plan.csv: line 2, column 'predecessors': '1SS': a task cannot be its own predecessor"},
       {"id,start,duration,predecessors\n1,2024-01-01,1,\n2,,1,1FS+2x\n",

@@ -53,11 +53,12 @@ tl::unexpected<Error> not_utf8(std::string_view bytes, const std::string& name) 
                   " is no UTF-8; save the plan in UTF-8 (Latin-1 and Windows code pages are not read)");
 }
 
-/// What stands most often between quotes of the first line; a comma when nothing does.
+/// What stands most often between quotes of the first line that is not empty; a comma when nothing does.
 char find_delimiter(std::string_view bytes) {
   constexpr std::string_view kDelimiters = ",;\t";
   std::array<std::size_t, 3> counts{};
   bool quoted = false;
+  bytes.remove_prefix(std::min(bytes.find_first_not_of("\r\n"), bytes.size()));  // lines that say nothing
   for (const char c : bytes) {
     if (c == '"') quoted = !quoted;
     if (!quoted && (c == '\n' || c == '\r')) break;

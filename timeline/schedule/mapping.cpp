@@ -167,13 +167,15 @@ void Mapper::settle_object(std::span<Claim> claims) {
     const CivilSeconds sa = *plan_.tasks[a.task].start_s, sb = *plan_.tasks[b.task].start_s;
     return sa != sb ? sa < sb : a.task < b.task;
   });
-  Mapping::Shared shared{claims.front().object, {}, {}};
+  Mapping::Shared shared{claims.front().object, {}, {}, false};
   const std::unordered_map<std::uint32_t, MatchRule> surest_below = surest_below_summaries(claims);
   std::array<MatchRule, 2> strongest{};  // by Group, of the run that begins here
+  bool settled = false;                  // a task of this run lets it appear, or takes it away
   std::size_t run_end = 0;
   for (std::size_t i = 0; i < claims.size(); ++i) {
     if (i == run_end) {
       strongest.fill(MatchRule::subtree);
+      settled = false;
       Group kind = Group::other;  // a run goes on over activities that leave the object where it is
       for (; run_end < claims.size(); ++run_end) {
         const Group g = group_of(plan_.tasks[claims[run_end].task].profile);
@@ -190,6 +192,10 @@ void Mapper::settle_object(std::span<Claim> claims) {
     const auto below = surest_below.find(claim.task);
     const bool summary = below != surest_below.end() && below->second <= claim.rule;
     (weaker || summary ? shared.losers : shared.tasks).push_back(claim.task);
+    if (!weaker && !summary && g != Group::other) {
+      shared.equals = shared.equals || settled;
+      settled = true;
+    }
     if (!weaker && !summary) out_.objects_of_task[claim.task].push_back(claim.object);
   }
   if (claims.size() > 1) out_.claimed_twice.push_back(std::move(shared));

@@ -43,6 +43,7 @@ struct Mapping {
     ObjectId object;
     std::vector<std::uint32_t> tasks;   ///< that it takes part in, by start
     std::vector<std::uint32_t> losers;  ///< that claimed it by a weaker rule
+    bool equals = false;                ///< several of `tasks` in a row let it appear, or take it away
   };
   std::vector<std::vector<ObjectId>> objects_of_task;  ///< by task; ascending
   std::vector<std::optional<MatchRule>> rule_of_task;  ///< the strongest that found something

@@ -123,6 +123,13 @@ Result<void> take_cell(Task& task, Column column, std::string_view text, const P
   return {};
 }
 
+/// "+2d" of "A + 2d"
+std::string lag_of(std::string_view piece, std::string_view id) {
+  std::string out(trimmed(trimmed(piece).substr(id.size())));
+  if (const auto last = out.back(); last >= '0' && last <= '9') out += 'd';
+  return out;
+}
+
 Result<void> take_predecessors(Task& task, std::uint32_t self, std::string_view text,
                                const std::unordered_map<std::string, std::uint32_t>& ids) {
   Result<void> done;
@@ -134,6 +141,13 @@ Result<void> take_predecessors(Task& task, std::uint32_t self, std::string_view 
       auto parsed = parse_link(piece);
       if (!parsed) {
         done = forward_error(parsed);
+        return;
+      }
+      if (parsed->lag_without_kind &&
+          ids.count(std::string(parsed->id)) != 0) {  // 'A-2' may be a typing error
+        done = fail(ErrorKind::bad_input, "",
+                    "no task is called " + in_quotes(piece) + "; a lag stands behind FS, SS, FF or SF: " +
+                        std::string(parsed->id) + "FS" + lag_of(piece, parsed->id));
         return;
       }
       link.kind = parsed->kind;

@@ -274,7 +274,9 @@ Result<LinkText> parse_link(std::string_view text) {
       head = before;
     }
   }
+  out.lag_without_kind = head.size() < trimmed(text).size();
   if (const std::size_t kind = kind_at_end(head); kind < kLinkKinds.size() && head.size() > 2) {
+    out.lag_without_kind = false;
     out.kind = static_cast<LinkKind>(kind);
     head = trimmed(head.substr(0, head.size() - 2));
   }

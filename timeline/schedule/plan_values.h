@@ -27,6 +27,7 @@ struct LinkText {
   std::string_view id;
   LinkKind kind = LinkKind::finish_start;
   CivilSeconds lag_s = 0;
+  bool lag_without_kind = false;  ///< "3+2d": MS Project writes it only behind FS, SS, FF or SF
 };
 [[nodiscard]] Result<LinkText> parse_link(std::string_view text);
 
