@@ -194,10 +194,23 @@ std::string first_date(const Scheduled& made) {
   return made.calendar.start.substr(0, 10);
 }
 
+/// As plans say it: the midnight at which a task ends is the day before, which it includes.
+std::string finish_text(timeline::CivilSeconds start_s, timeline::CivilSeconds finish_s) {
+  const std::string text = timeline::moment_text(finish_s);
+  const bool whole_days = text.size() == 10 && finish_s > start_s;
+  return whole_days ? timeline::moment_text(finish_s - 1).substr(0, 10) : text;
+}
+
 std::string last_date(const Scheduled& made) {
-  double end_s = 0;
-  for (const CalendarTask& task : made.calendar.tasks) end_s = std::max(end_s, task.finish_s);
-  return timeline::date_at(made.calendar, end_s).substr(0, 10);
+  std::string last;
+  for (const CalendarTask& task : made.calendar.tasks) {
+    const std::string finish = timeline::date_at(made.calendar, task.finish_s);
+    // Half a day back from midnight is the day before.
+    const bool whole_days = finish.size() == 10 && task.finish_s > task.start_s;
+    const double at_s = task.finish_s - (whole_days ? made.calendar.seconds_per_day / 2 : 0);
+    last = std::max(last, timeline::date_at(made.calendar, at_s).substr(0, 10));
+  }
+  return last;
 }
 
 /// "house.glb  5.1 MB  83 of 83 objects  12 tasks  2024-03-01 to 2024-05-24  84 s  0.21 s"
@@ -230,9 +243,15 @@ std::vector<std::string> all_notes(const Scheduled& made) {
     out.push_back(listed(plural(m.objects_without_tasks.size(), "object") + " without a task",
                          m.objects_without_tasks, [&](ObjectId id) { return made.names[id.value]; }));
   }
-  std::vector<ObjectId> lost;
+  std::vector<ObjectId> lost, equal;
   for (const Mapping::Shared& shared : m.claimed_twice) {
     if (!shared.losers.empty()) lost.push_back(shared.object);
+    if (shared.equals) equal.push_back(shared.object);
+  }
+  if (!equal.empty()) {
+    out.push_back(
+        listed(plural(equal.size(), "object") + " claimed twice by rules as sure, all of which count", equal,
+               [&](ObjectId id) { return made.names[id.value]; }));
   }
   if (!lost.empty()) {
     out.push_back(listed(plural(lost.size(), "object") + " claimed twice, of which the surer rule counts",
@@ -259,7 +278,7 @@ ordered_json tasks_json(const Scheduled& made) {
                    {"type", timeline::name(task.profile)},
                    {"summary", task.summary},
                    {"start", timeline::moment_text(*task.start_s)},
-                   {"finish", timeline::moment_text(*task.finish_s)},
+                   {"finish", finish_text(*task.start_s, *task.finish_s)},
                    {"rule", rule ? ordered_json(timeline::name(*rule)) : ordered_json()},
                    {"objects", std::move(names)}});
   }
@@ -306,6 +325,9 @@ Report report(const ScheduleRequest& r, const Scheduled& made, const std::vector
 
 /// What --dry-run prints: which task is about how many objects, and how that was found.
 std::string mapping_table(const Scheduled& made, Format format) {
+  const auto cell = [&](const std::string& text) {  // a name of two lines would break the row
+    return format == Format::table ? printable(text) : text;
+  };
   Table table({{"task", "task"},
                {"name", "name"},
                {"type", "type"},
@@ -316,8 +338,9 @@ std::string mapping_table(const Scheduled& made, Format format) {
   for (std::size_t i = 0; i < made.plan.tasks.size(); ++i) {
     const Task& task = made.plan.tasks[i];
     const auto& rule = made.mapping.rule_of_task[i];
-    table.row({task.id, task.name, task.summary ? std::string_view("summary") : timeline::name(task.profile),
-               timeline::moment_text(*task.start_s), timeline::moment_text(*task.finish_s),
+    table.row({cell(task.id), cell(task.name),
+               task.summary ? std::string_view("summary") : timeline::name(task.profile),
+               timeline::moment_text(*task.start_s), finish_text(*task.start_s, *task.finish_s),
                made.mapping.objects_of_task[i].size(), rule ? timeline::name(*rule) : "-"});
   }
   return table.str(format);
