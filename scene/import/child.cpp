@@ -39,11 +39,13 @@ void lower(int resource, std::uint64_t wanted) {
   (void)::setrlimit(static_cast<__rlimit_resource>(resource), &limit);
 }
 
+#ifndef SCENEGEN_SHADOW_MEMORY
 std::uint64_t address_space_bytes() {
   std::uint64_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
   return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
+#endif
 
 void restrain(const ChildLimits& limits, pid_t parent) {
   (void)::prctl(PR_SET_PDEATHSIG, SIGKILL);
