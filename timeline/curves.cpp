@@ -93,6 +93,7 @@ Result<CurveKind> parse_curve(std::string_view text) {
     if (text == name(kind)) return kind;
   }
   std::vector<std::string_view> names;
+  names.reserve(std::size(kCurves));
   for (const CurveKind kind : kCurves) names.push_back(name(kind));
   return fail(ErrorKind::usage, "--curve", unknown_word("value", text, names));
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cstring>
 #include <limits>
 
@@ -162,6 +163,38 @@ void remove_unused_tracks(Scene& scene) {
   for (const ObjectMeshTrack& use : scene.object_mesh_tracks) stays[use.track.value] = true;
   for (const MaterialTrack& use : scene.material_tracks) stays[use.track.value] = true;
   keep_tracks(scene, stays);
+}
+
+TracksAsRead::TracksAsRead(const Scene& scene)
+    : tracks_(scene.tracks),
+      times_s_(scene.track_times_s),
+      values_(scene.track_values),
+      frame_tracks_(scene.frame_tracks),
+      object_mesh_tracks_(scene.object_mesh_tracks),
+      material_tracks_(scene.material_tracks) {}
+
+void TracksAsRead::restore(Scene& scene) const {
+  if (tracks_.empty()) return;
+  const std::size_t shift = tracks_.size();
+  for (Track& track : scene.tracks) {
+    track.first_time += times_s_.size();
+    track.first_value += values_.size();
+  }
+  scene.tracks.insert(scene.tracks.begin(), tracks_.begin(), tracks_.end());
+  scene.track_times_s.insert(scene.track_times_s.begin(), times_s_.begin(), times_s_.end());
+  scene.track_values.insert(scene.track_values.begin(), values_.begin(), values_.end());
+  for (TrackId& id : scene.objects.visibility) {
+    if (id.valid()) id = TrackId(id.value + shift);
+  }
+  const auto renumber = [shift](const auto& as_read, auto& uses) {
+    assert(uses.size() >= as_read.size());
+    std::copy(as_read.begin(), as_read.end(), uses.begin());
+    for (std::size_t i = as_read.size(); i < uses.size(); ++i)
+      uses[i].track = TrackId(uses[i].track.value + shift);
+  };
+  renumber(frame_tracks_, scene.frame_tracks);
+  renumber(object_mesh_tracks_, scene.object_mesh_tracks);
+  renumber(material_tracks_, scene.material_tracks);
 }
 
 TrackSharing::TrackSharing(Scene& scene) : scene_(scene) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <unordered_map>
+#include <vector>
 
 #include "scene/scene.h"
 
@@ -17,6 +18,24 @@ void remove_visibility_tracks(Scene& scene);
 /// Drops tracks that nothing names with the keys that no other track uses, and renumbers what names the
 /// others.
 void remove_unused_tracks(Scene& scene);
+
+/// The tracks of a scene as they were read, for gltf::patch(), which tells by their numbers what the file has
+/// already. Steps that drop and renumber tracks may come between the two calls; what stood in the lists of
+/// frame, mesh and material tracks must still stand first in them.
+class TracksAsRead {
+ public:
+  explicit TracksAsRead(const Scene& scene);
+  /// Puts them in front of the table again; those that were added since follow, those that the objects,
+  /// frames and materials had since then keep their numbers as read.
+  void restore(Scene& scene) const;
+
+ private:
+  std::vector<Track> tracks_;
+  std::vector<float> times_s_, values_;
+  std::vector<FrameTrack> frame_tracks_;
+  std::vector<ObjectMeshTrack> object_mesh_tracks_;
+  std::vector<MaterialTrack> material_tracks_;
+};
 
 /// Adds tracks to a scene, each content once. Visibility tracks that stood in the scene are used too.
 class TrackSharing {

@@ -12,6 +12,7 @@
 #include "timeline/appearance.h"
 #include "timeline/profiles.h"
 #include "timeline/statistics.h"
+#include "timeline/track_table.h"
 #include "tools/output.h"
 #include "tools/profile_options.h"
 #include "tools/scenegen.h"
@@ -309,13 +310,18 @@ Result<Animated> animate(const AnimateRequest& r, const std::vector<std::string>
   if (!read) return forward_error(read);
   Scene& scene = read->scene;
   progress.stage("giving times to " + human_count(scene.objects.size()) + " objects");
+  const timeline::TracksAsRead as_read(scene);
   auto profiled = give_times(r, *read, scene, out);
   if (!profiled) return forward_error(profiled);
   scene.info.seed = r.seed;
   scene.info.arguments = arguments;
   scene.info.calendar.reset();
+  if (r.dry_run || r.format != Format::table || !r.report.empty())
+    out.counts = timeline::statistics(scene, r.appearance.threads);
+  out.counts.objects = scene.objects.size();
   if (!r.dry_run) {
     progress.stage("writing " + r.output);
+    as_read.restore(scene);
     gltf::PatchOptions options;
     options.visibility = r.visibility;
     options.material_copy_of = profiled->copy_of;
@@ -324,9 +330,6 @@ Result<Animated> animate(const AnimateRequest& r, const std::vector<std::string>
     out.file = std::move(*file);
     out.notes.insert(out.notes.end(), out.file.notes.begin(), out.file.notes.end());
   }
-  if (r.dry_run || r.format != Format::table || !r.report.empty())
-    out.counts = timeline::statistics(scene, r.appearance.threads);
-  out.counts.objects = scene.objects.size();
   out.seconds = stopwatch.seconds();
   return out;
 }

@@ -142,6 +142,24 @@ TEST_CASE("our own instanced files get times of their own again") {
   check_equal(read_scene(folder.file("wanted.glb")), read_scene(folder.file("made.glb")));
 }
 
+TEST_CASE("a file that has times already gets others") {
+  const TemporaryFolder folder;
+  for (const char* layout : {"nodes", "instances"}) {
+    const std::string kind = layout;
+    INFO(kind);
+    const std::string make = "--grid 1x1 --layout " + kind;
+    check_ok(run(SCENEGEN_PROGRAM, words(make + " --curve none -o still.glb"), {.folder = folder.path()}));
+    check_ok(run(SCENEGEN_PROGRAM, words(make + " --cells 5x5x5 -o timed.glb"), {.folder = folder.path()}));
+    for (const char* profile : {"appear", "construct", "drop"}) {
+      const std::string how =
+          "--exclude ground/* --cells 7x6x5 --interval 0.02 --profile " + std::string(profile) + " -o ";
+      check_ok(animate(folder, "still.glb", how + "once.glb"));
+      check_ok(animate(folder, "timed.glb", how + "again.glb"));
+      check_equal(read_scene(folder.file("once.glb")), read_scene(folder.file("again.glb")));
+    }
+  }
+}
+
 TEST_CASE("stdin, stdout, dry runs and configs") {
   const TemporaryFolder folder;
   check_ok(animate(folder, kEngine, "-o e.glb --rule drop:name=* --rule construct:node_1*"));
