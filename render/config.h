@@ -5,9 +5,9 @@
 
 namespace scenegen::render {
 
-// Frames the processor may be ahead of the device: one staging ring, command pool and set of readback buffers
-// each.
-constexpr std::uint32_t kFramesInFlight = 2;
+// The most frames that may be in flight at once: each has a staging ring, a command pool and a set of
+// readback buffers of its own.
+constexpr std::uint32_t kMostFramesInFlight = 3;
 // Device memory comes in blocks of this size; larger resources get a block of their own.
 constexpr std::uint64_t kMemoryBlockBytes = 64ULL << 20;
 // Staging for dirty records, per frame in flight; grows to what one frame needed.

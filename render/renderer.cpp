@@ -151,7 +151,7 @@ void Renderer::State::build(const Scene& source, const timeline::Player& player)
                        vk::SampleCountFlagBits::e1);
   gpu->bind_shadow_map(shadow->depth);
   strategy = find_strategy(options.strategy)->make({*scene, *device, options.how});
-  ring.emplace(*device, kFramesInFlight);
+  ring.emplace(*device, options.frames_in_flight);
 }
 
 void Renderer::State::make_targets() {
@@ -166,7 +166,15 @@ void Renderer::State::make_targets() {
 }
 
 PassContext Renderer::State::context(vkr::Frame& frame, vkr::Barriers& barriers) {
-  return {*device, *memory, *pipelines, *gpu, *scene, frame, barriers, ring->completed()};
+  return {*device,
+          *memory,
+          *pipelines,
+          *gpu,
+          *scene,
+          frame,
+          barriers,
+          ring->completed(),
+          options.frames_in_flight};
 }
 
 vkr::Buffer& Renderer::State::readback(vkr::Buffer& buffer) {
@@ -290,6 +298,9 @@ Result<Renderer> Renderer::create(const Scene& scene, const timeline::Player& pl
                                   const RendererOptions& options) {
   if (options.samples != 1 && options.samples != 4)
     return fail(ErrorKind::usage, "--samples", std::to_string(options.samples) + "; 1 or 4");
+  if (options.frames_in_flight < 1 || options.frames_in_flight > kMostFramesInFlight)
+    return fail(ErrorKind::usage, "--frames-in-flight",
+                std::to_string(options.frames_in_flight) + "; 1 to " + std::to_string(kMostFramesInFlight));
   if (find_strategy(options.strategy) == nullptr)
     return fail(ErrorKind::usage, "--strategy", "unknown value '" + options.strategy + "'");
   auto state = std::make_unique<State>();
@@ -308,8 +319,8 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-std::uint32_t Renderer::most_in_flight() {
-  return kFramesInFlight;
+std::uint32_t Renderer::most_in_flight() const {
+  return state_->options.frames_in_flight;
 }
 std::uint32_t Renderer::in_flight() const {
   return static_cast<std::uint32_t>(state_->unfinished.size());

@@ -30,6 +30,9 @@ struct RendererOptions {
   std::string strategy = "inline";
   StrategyOptions how;
   bool shadows = true;
+  /// Frames that may be submitted and not finished, 1 to 3. With 1 the processor and the device work one
+  /// after the other.
+  std::uint32_t frames_in_flight = 2;
   bool full_barriers = false;  ///< a full barrier at every step: must give equal pictures
 };
 
@@ -78,15 +81,15 @@ struct FrameResult {
 class Renderer {
  public:
   /// Uploads the scene in the state of `player`. Errors: no_device, usage (unknown strategy, device, sample
-  /// count). `scene` is not needed afterwards.
+  /// count, number of frames in flight). `scene` is not needed afterwards.
   [[nodiscard]] static Result<Renderer> create(const Scene& scene, const timeline::Player& player,
                                                const RendererOptions& options);
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// Frames that may be submitted and not finished.
-  [[nodiscard]] static std::uint32_t most_in_flight();
+  /// Frames that may be submitted and not finished: RendererOptions::frames_in_flight.
+  [[nodiscard]] std::uint32_t most_in_flight() const;
   [[nodiscard]] std::uint32_t in_flight() const;
   /// Draws the state of `player`, which differs from the last submitted one by `changes`. Must not be called
   /// with most_in_flight() frames unfinished.

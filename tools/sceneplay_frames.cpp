@@ -41,6 +41,7 @@ struct FramesRequest {
   std::uint32_t octree_n = 0;
   std::uint64_t octree_mib = 1024;
   bool late_visibility = false;
+  std::uint32_t frames_in_flight = 2;
   bool full_barriers = false;
   std::string device;
   bool list_devices = false;
@@ -217,7 +218,7 @@ class Filming {
   Result<void> run(const std::vector<double>& times) {
     Progress progress("frames", times.size(), request_.quiet);
     for (const double time_s : times) {
-      if (renderer_.in_flight() == render::Renderer::most_in_flight()) {
+      if (renderer_.in_flight() == renderer_.most_in_flight()) {
         if (Result<void> done = finish_one(progress); !done) return done;
       }
       const Stopwatch watch;
@@ -297,6 +298,7 @@ ordered_json report_json(const FramesRequest& request, Filming& filming, double 
           {"size", {request.size.x, request.size.y}},
           {"samples", request.samples},
           {"strategy", request.strategy},
+          {"framesInFlight", request.frames_in_flight},
           {"shadows", request.shadows},
           {"loadS", load_s},
           {"totalS", total_s},
@@ -317,6 +319,7 @@ render::RendererOptions renderer_options(const FramesRequest& request) {
   o.how.octree_bytes = request.octree_mib << 20;
   o.how.late_visibility = request.late_visibility;
   o.shadows = request.shadows;
+  o.frames_in_flight = request.frames_in_flight;
   o.full_barriers = request.full_barriers;
   return o;
 }
@@ -412,6 +415,9 @@ void add_options(Options& options, FramesRequest& r) {
               "what --strategy octree may take; without room for it, inline is used");
   options.flag("--late-visibility", r.late_visibility,
                "queries: believe results of earlier frames; what comes into view may appear frames too late");
+  options.add("--frames-in-flight",
+              choice_value<std::uint32_t>(r.frames_in_flight, {{"1", 1}, {"2", 2}, {"3", 3}}, "N"),
+              "frames at work at once; 1: processor and device one after the other");
   options.add("--barriers", choice_value<bool>(r.full_barriers, {{"exact", false}, {"full", true}}),
               "full: a full barrier at every step, to look for missing ones");
   options.group("Device");

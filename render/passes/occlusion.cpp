@@ -29,8 +29,9 @@ void Occlusion::make_scatter() {
                                       vk::ShaderModuleCreateInfo({}, sizeof(kScatterComp), kScatterComp));
   const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main");
   scatter_ = vk::raii::Pipeline(device_.device, nullptr, vk::ComputePipelineCreateInfo({}, stage, *layout_));
-  const vk::DescriptorPoolSize size(Type::eStorageBuffer, 3 * kFramesInFlight);
-  pool_ = vk::raii::DescriptorPool(device_.device, vk::DescriptorPoolCreateInfo({}, kFramesInFlight, size));
+  const vk::DescriptorPoolSize size(Type::eStorageBuffer, 3 * kMostFramesInFlight);
+  pool_ =
+      vk::raii::DescriptorPool(device_.device, vk::DescriptorPoolCreateInfo({}, kMostFramesInFlight, size));
   for (Place& p : places_)
     p.set = (*device_.device)
                 .allocateDescriptorSets({*pool_, *set_layout_}, *device_.device.getDispatcher())

@@ -59,14 +59,14 @@ class Occlusion {
     std::vector<std::uint32_t> samples;
   };
   [[nodiscard]] Place& place(const PassContext& context) {
-    return places_[context.frame.serial % kFramesInFlight];
+    return places_[context.frame.serial % context.frames_in_flight];
   }
   void make_scatter();
   void describe(Place& place);
 
   const vkr::Device& device_;
   bool with_predicates_;
-  std::array<Place, kFramesInFlight> places_;
+  std::array<Place, kMostFramesInFlight> places_;
   vkr::Buffer predicates_;
   std::vector<vkr::Buffer> old_predicates_;  // commands of frames in flight may name them
   vk::raii::DescriptorSetLayout set_layout_{nullptr};

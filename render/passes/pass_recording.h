@@ -23,7 +23,8 @@ struct PassContext {
   const DrawScene& scene;
   vkr::Frame& frame;
   vkr::Barriers& barriers;
-  std::uint64_t completed = 0;  ///< serial of the last frame that the device is done with
+  std::uint64_t completed = 0;         ///< serial of the last frame that the device is done with
+  std::uint32_t frames_in_flight = 1;  ///< frame n - this many is done when frame n is recorded
 };
 
 /// Begins a secondary command buffer that runs inside `pass`: it inherits nothing but the attachments.

@@ -126,7 +126,7 @@ std::vector<FrameResult> render(const Scene& scene, const std::vector<double>& t
     if (!finished) FAIL(finished.error().str());
   };
   for (const double t : times_s) {
-    if (renderer->in_flight() == Renderer::most_in_flight()) finish();
+    if (renderer->in_flight() == renderer->most_in_flight()) finish();
     const timeline::ChangeSet& changes = player.seek(t);
     const Result<void> submitted = renderer->submit(changes, player, view);
     if (!submitted) FAIL(submitted.error().str());

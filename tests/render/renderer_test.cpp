@@ -388,6 +388,11 @@ TEST_CASE("an empty scene is sky; one sample works; wrong options are errors") {
   wrong.samples = 3;
   CHECK(kind(wrong) == ErrorKind::usage);
   wrong = options;
+  wrong.frames_in_flight = 0;
+  CHECK(kind(wrong) == ErrorKind::usage);
+  wrong.frames_in_flight = 4;
+  CHECK(kind(wrong) == ErrorKind::usage);
+  wrong = options;
   wrong.strategy = "magic";
   CHECK(kind(wrong) == ErrorKind::usage);
   wrong = options;

@@ -219,7 +219,7 @@ Run run_path(const Path& path, RendererOptions options) {
       const Result<void> resized = renderer->resize(frame.size);
       if (!resized) FAIL(resized.error().str());
     }
-    if (renderer->in_flight() == Renderer::most_in_flight()) finish();
+    if (renderer->in_flight() == renderer->most_in_flight()) finish();
     const timeline::ChangeSet& changes = player.seek(frame.time_s);
     const Result<void> submitted =
         renderer->submit(changes, player, look(frame.eye_m, frame.target_m, frame.size, 0.9F));
