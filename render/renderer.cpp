@@ -79,6 +79,7 @@ struct Renderer::State {
   std::optional<vkr::Pipelines> pipelines;
   std::optional<DrawScene> scene;
   std::optional<GpuScene> gpu;
+  model::UnitCosts costs;
   std::unique_ptr<Strategy> strategy;
   std::optional<Target> color, ids, shadow;
   std::optional<vkr::FrameRing> ring;
@@ -150,7 +151,9 @@ void Renderer::State::build(const Scene& source, const timeline::Player& player)
   shadow = make_target(*device, *memory, *pipelines, vkr::PassKind::shadow, {side, side},
                        vk::SampleCountFlagBits::e1);
   gpu->bind_shadow_map(shadow->depth);
-  strategy = find_strategy(options.strategy)->make({*scene, *device, options.how});
+  costs = options.costs ? *options.costs : model::rough_costs(device->info.type == "CPU");
+  strategy = find_strategy(options.strategy)
+                 ->make({*scene, *device, options.how, costs, options.frames_in_flight, options.size});
   ring.emplace(*device, options.frames_in_flight);
 }
 
@@ -292,6 +295,9 @@ void Renderer::State::finish(FrameResult& out) {
   copy(out.depth, frame->depth, options.outputs.depth);
   report.readback_ms = ms_since(start);
   out.report = report;
+  strategy->finished({frame->serial,
+                      (report.update_ms + report.plan_ms + report.record_ms + report.submit_ms) * 1e-3,
+                      report.gpu_ms * 1e-3});
 }
 
 Result<Renderer> Renderer::create(const Scene& scene, const timeline::Player& player,
@@ -343,7 +349,7 @@ Result<void> Renderer::resize(glm::uvec2 size) {
     state_->ring->wait_all();
     state_->options.size = size;
     state_->make_targets();
-    state_->strategy->resized();
+    state_->strategy->resized(size);
   });
 }
 

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "render/device_options.h"
+#include "render/model/unit_costs.h"
 #include "render/strategy_options.h"
 #include "render/view.h"
 #include "scene/result.h"
@@ -29,6 +31,7 @@ struct RendererOptions {
   Outputs outputs;
   std::string strategy = "inline";
   StrategyOptions how;
+  std::optional<model::UnitCosts> costs;  ///< from a calibration of this device; none: rough ones
   bool shadows = true;
   /// Frames that may be submitted and not finished, 1 to 3. With 1 the processor and the device work one
   /// after the other.

@@ -62,7 +62,9 @@ void CachedOctree::draw_blended(DrawRecorder& recorder) {
   for (const std::uint32_t slot : list_.blended) recorder.draw(slot);
 }
 
-void CachedOctree::resized() {
+void CachedOctree::resized(glm::uvec2 size) {
+  context_.size = size;
+  if (inline_) inline_->resized(size);
   if (cache_) cache_->forget();
 }
 

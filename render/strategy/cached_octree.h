@@ -23,7 +23,7 @@ class CachedOctree : public Strategy {
   void plan(const View& view) override;
   void draw_solid(PassRecording& pass) override;
   void draw_blended(DrawRecorder& recorder) override;
-  void resized() override;
+  void resized(glm::uvec2 size) override;
 
  protected:
   /// Draws the chunks in the frustum, `chunks_`. What needs memory comes first: when it throws for want of

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "render/draw_scene.h"
+#include "render/model/prediction.h"
 #include "render/strategy_options.h"
 #include "render/view.h"
 
@@ -25,6 +26,17 @@ struct StrategyContext {
   const DrawScene& scene;
   const vkr::Device& device;
   StrategyOptions options;
+  const model::UnitCosts&
+      costs;  ///< may become better from frame to frame, never between plan() and draw_*()
+  std::uint32_t frames_in_flight = 2;
+  glm::uvec2 size{0};  ///< of the pictures, pixels; resized() tells another
+};
+
+/// What a frame took that was submitted some frames ago, seconds; gpu_s < 0: not measured.
+struct FrameTimes {
+  std::uint64_t serial = 0;  ///< frames are counted from 1
+  double cpu_s = 0;
+  double gpu_s = -1;
 };
 
 /// What planning and drawing found, for the frame report.
@@ -57,7 +69,12 @@ class Strategy {
   /// Draws blended objects, back to front.
   virtual void draw_blended(DrawRecorder& recorder) = 0;
   /// The pictures have another size: nothing that holds a viewport is good any more. No frame is in flight.
-  virtual void resized() {}
+  virtual void resized(glm::uvec2 /*size*/) {}
+  /// An earlier frame was finished: for strategies that learn.
+  virtual void finished(const FrameTimes& /*measured*/) {}
+  /// For the model's prediction of the frame that was just drawn; what this way of drawing did not find out
+  /// stays 0 and `exact_*` false. Not part of drawing: called only when someone wants predictions.
+  [[nodiscard]] virtual model::FrameFacts facts() const { return {}; }
 
   /// Of the last plan and the passes since.
   [[nodiscard]] const PlanCounters& counters() const { return counters_; }

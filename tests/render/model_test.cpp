@@ -7,9 +7,20 @@
 #include "render/model/frame_time.h"
 #include "render/model/memory.h"
 #include "render/model/queries.h"
+#include "render/model/unit_costs.h"
 
 using namespace scenegen;
 using namespace scenegen::render::model;
+
+TEST_CASE("a cost curve is linear in log x and flat outside", "[model]") {
+  const Curve curve{{1, 100}, {2, 4}};
+  CHECK(curve.at(0.5) == 2);
+  CHECK(curve.at(1) == 2);
+  CHECK(curve.at(10) == Approx(3));
+  CHECK(curve.at(100) == 4);
+  CHECK(curve.at(1e9) == 4);
+  CHECK(Curve{}.at(3) == 0);
+}
 
 TEST_CASE("(2.2) to (2.9) memory") {
   CHECK(geometry_bytes({100, 300, 100, 50}, {12, 4, 8, 6}) == 1200 + 1200 + 800 + 300);
