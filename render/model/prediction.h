@@ -41,6 +41,7 @@ struct FrameFacts {
   double blended_draws = 0;  ///< drawn the same way by all
   double screen_pixels = 0;  ///< times samples where shading is by sample
 
+  // Loads are of opaque and masked slots; blended ones are counted apart.
   Load visible;     ///< all that is visible by timeline
   Load in_frustum;  ///< by object
 

@@ -1,0 +1,44 @@
+// What lists of slots and chunks give the device to do, as the model counts it: pure processor code.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+
+#include "render/draw_scene.h"
+#include "render/model/frame_time.h"
+#include "render/model/prediction.h"
+#include "render/spatial/octree.h"
+#include "render/view.h"
+
+namespace scenegen::render {
+
+/// How many pixels boxes cover in a picture: (2.23), and its like for orthographic views.
+class ScreenArea {
+ public:
+  ScreenArea(const View& view, glm::uvec2 size);
+  /// `occupied`: 1 for an object, occupied_share() for a chunk or node. At most pixels().
+  [[nodiscard]] double fragments(const Box& box, double occupied = 1.0) const;
+  [[nodiscard]] double fragments(const Octree::Content& content) const;
+  [[nodiscard]] double pixels() const { return screen_.width * screen_.height; }
+  /// The share of the picture that `fragments` cover when they lie anywhere: 1 - exp(-fragments / pixels).
+  [[nodiscard]] double covered_share(double fragments) const;
+
+ private:
+  model::Screen screen_;
+  double per_m2_ = 0;  // orthographic: pixels a square metre
+};
+
+/// Slots looked at for one estimate; longer lists are sampled at equal steps and scaled.
+constexpr std::size_t kSampledSlots = 512;
+
+/// Draws are exact, the rest by kSampledSlots.
+[[nodiscard]] model::Load load_of_slots(const DrawScene& scene, std::span<const std::uint32_t> slots,
+                                        const ScreenArea& screen);
+/// Of opaque and masked slots that are visible by timeline. O(slots / 64).
+[[nodiscard]] model::Load load_of_visible(const DrawScene& scene, const ScreenArea& screen);
+/// Draws and vertices are exact, fragments by the chunks' boxes and the share of them that is occupied.
+[[nodiscard]] model::Load load_of_chunks(const DrawScene& scene, const Octree& tree,
+                                         std::span<const std::uint32_t> chunks, const ScreenArea& screen);
+
+}  // namespace scenegen::render

@@ -1,0 +1,105 @@
+// What the model is told about lists of slots and chunks, against sums over all of them.
+#include "render/strategy/estimate_load.h"
+
+#include <numeric>
+
+#include "render/spatial/scene_octree.h"
+#include "render/strategy/draw_list.h"
+#include "scene/random.h"
+#include "tests/render/render_support.h"
+
+using namespace scenegen;
+using namespace scenegen::render;
+using namespace scenegen::render::test;
+
+namespace {
+
+constexpr glm::uvec2 kSize{400, 300};
+
+/// Boxes and quads of many sizes, each fourth to come later, some of glass.
+Scene boxes_scene(std::size_t objects) {
+  Scene scene;
+  Material glass = plain({1, 1, 1, 0.5F});
+  glass.alpha_mode = AlphaMode::blend;
+  const std::array meshes{add_mesh(scene, box_geometry(), plain({1, 0, 0, 1})),
+                          add_mesh(scene, quad_geometry(), plain({0, 1, 0, 1})),
+                          add_mesh(scene, box_geometry(), glass)};
+  const Random random(5, "estimates");
+  for (std::size_t i = 0; i < objects; ++i) {
+    const auto unit = [&](std::uint64_t k) { return random.unit(8 * i + k); };
+    const ObjectId id = add_object(scene, "o" + std::to_string(i), meshes[i % 7 == 0 ? 2 : i % 2],
+                                   {unit(0) * 40 - 20, unit(1) * 10, unit(2) * 40 - 20},
+                                   glm::vec3(0.2F) + glm::vec3(unit(3), unit(4), unit(5)));
+    if (i % 4 == 0) appear_at(scene, id, 5.0F);
+  }
+  return scene;
+}
+
+struct Sum {
+  double draws = 0, vertices = 0, fragments = 0;
+};
+Sum sum_of(const DrawScene& scene, const std::vector<std::uint32_t>& slots, const ScreenArea& screen) {
+  Sum sum;
+  for (const std::uint32_t slot : slots) {
+    sum.draws += 1;
+    sum.vertices += scene.primitive(slot).vertices;
+    sum.fragments += screen.fragments(scene.boxes().get(slot));
+  }
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("loads are exact up to 512 slots, and near above") {
+  for (const std::size_t objects : {300, 20'000}) {
+    const Scene source = boxes_scene(objects);
+    const timeline::Player player(timeline::compile(source));
+    const DrawScene scene(source, player, std::vector<std::uint32_t>(source.materials.size() + 1, 0));
+    const ScreenArea screen(look({0, 20, 60}, {0, 5, 0}, kSize), kSize);
+    DrawList list;
+    list_visible(scene, list);
+    const Sum all = sum_of(scene, list.solid, screen);
+    const double tolerance = objects == 300 ? 1e-9 : 0.1;
+    for (const model::Load& load :
+         {load_of_slots(scene, list.solid, screen), load_of_visible(scene, screen)}) {
+      CHECK(load.draws == all.draws);
+      CHECK(load.vertices == Approx(all.vertices).epsilon(tolerance));
+      CHECK(load.fragments == Approx(all.fragments).epsilon(tolerance));
+      CHECK(load.textured_share == 0);
+      CHECK(load.screen_share == Approx(1 - std::exp(-load.fragments / 120'000)));
+    }
+
+    const SceneOctree octree(scene, 20);
+    std::vector<std::uint32_t> chunks;
+    for (std::uint32_t i = 0; i < octree.tree().chunk_numbers(); ++i) {
+      if (octree.tree().chunk(i).node != Octree::kNone) chunks.push_back(i);
+    }
+    const model::Load load = load_of_chunks(scene, octree.tree(), chunks, screen);
+    CHECK(load.draws == all.draws);
+    CHECK(load.vertices == all.vertices);
+    // Chunks are counted by their nearest corners, and their fragments as if nothing in them hid another.
+    CHECK(load.fragments > 0.7 * all.fragments);
+    CHECK(load.fragments < 2.0 * all.fragments);
+  }
+}
+
+TEST_CASE("an orthographic view counts the pixels of a box wherever it is") {
+  Lens lens;
+  lens.orthographic = true;
+  lens.xmag_m = 4;
+  lens.ymag_m = 3;
+  lens.far_m = 100;
+  const ScreenArea screen(make_view(look_at({0, 0, 50}, {0, 0, 0}), lens, 4.0F / 3.0F), kSize);
+  for (const float z : {-20.0F, 0.0F, 30.0F})  // 50 pixels a metre
+    CHECK(screen.fragments({{-0.5F, -0.5F, z - 0.5F}, {0.5F, 0.5F, z + 0.5F}}) == Approx(2500));
+  CHECK(screen.fragments({{-50, -50, -1}, {50, 50, 1}}) == screen.pixels());
+}
+
+TEST_CASE("nothing to draw is no load") {
+  const Scene source = boxes_scene(0);
+  const timeline::Player player(timeline::compile(source));
+  const DrawScene scene(source, player, std::vector<std::uint32_t>(source.materials.size() + 1, 0));
+  const ScreenArea screen(look({0, 20, 60}, {0, 5, 0}, kSize), kSize);
+  const model::Load load = load_of_visible(scene, screen);
+  CHECK(load.draws + load.vertices + load.fragments + load.textured_share + load.screen_share == 0);
+}
