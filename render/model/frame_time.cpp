@@ -12,8 +12,8 @@ double area_m2(const Box& box) {
   return 2.0 * (s.x * s.y + s.y * s.z + s.z * s.x);
 }
 
-double longest(const GpuStages& stages) {
-  return std::max({stages.state_s, stages.vertices_s, stages.fragments_s});
+double together(const GpuStages& stages, double overlap) {
+  return beside_s(std::max(stages.state_s, stages.vertices_s), stages.fragments_s, overlap);
 }
 
 }  // namespace
@@ -28,13 +28,19 @@ double traverse_s(const FrameCounts& n, const TimeUnits& t) {
   return n.nodes * t.traverse;
 }
 double cull_octree_s(const FrameCounts& n, const TimeUnits& t) {
-  return n.nodes * t.cull_node;
+  return n.boxes * t.cull_node;
 }
 double cull_scene_s(const FrameCounts& n, const TimeUnits& t) {
   return n.objects * t.cull_object;
 }
 double record_s(double commands, const TimeUnits& t) {
   return commands * t.record;
+}
+double record_kept_s(double commands, const TimeUnits& t) {
+  return commands * t.record_kept;
+}
+double ask_s(const FrameCounts& n, const TimeUnits& t) {
+  return n.queried_nodes * t.ask;
 }
 double secondaries_s(const FrameCounts& n, const TimeUnits& t) {
   return n.drawn_nodes * t.secondary;
@@ -54,20 +60,16 @@ double work_s(std::span<const Work> work) {
                          [](double sum, const Work& w) { return sum + w.count * w.unit_s; });
 }
 
-double cpu_s(const Way& way, const FrameCounts& n, const TimeUnits& t) {
-  double sum = update_scene_s(n, t);
-  sum += way.octree ? update_octree_s(n, t) + traverse_s(n, t) + cull_octree_s(n, t) : cull_scene_s(n, t);
-  sum += way.kept ? record_s(n.rerecorded_draws, t) + secondaries_s(n, t) : record_s(n.drawn_objects, t);
-  if (way.queries) sum += record_s(n.queried_nodes, t) + receive_queries_s(n, t);
-  return sum;
+double beside_s(double a_s, double b_s, double overlap) {
+  return std::max(a_s, b_s) + (1.0 - overlap) * std::min(a_s, b_s);
 }
 
-double gpu_s(const GpuStages& drawn, const GpuStages& queried, double execute_queries_s) {
-  return longest(drawn) + std::max(longest(queried), execute_queries_s);
+double gpu_s(const GpuStages& drawn, const GpuStages& queried, double execute_queries_s, double overlap) {
+  return together(drawn, overlap) + std::max(together(queried, overlap), execute_queries_s);
 }
 
 double frame_s(double cpu_s, double gpu_s, std::uint32_t frames_in_flight, const TimeUnits& t) {
-  return t.empty_frame + (frames_in_flight <= 1 ? cpu_s + gpu_s : std::max(cpu_s, gpu_s));
+  return t.empty_frame + beside_s(cpu_s, gpu_s, frames_in_flight <= 1 ? 0.0 : t.overlap);
 }
 
 double box_fragments(const Box& box, double occupied, const Screen& screen) {

@@ -9,19 +9,24 @@
 
 namespace scenegen::render::model {
 
-/// Unit times, s. `secondary` is that of the number of draws a kept command buffer holds here.
+/// Unit times, s, of one frame: UnitCosts at the sizes that the frame has (units_of). `secondary` is that of
+/// the number of draws a kept command buffer holds here.
 struct TimeUnits {
   double update = 0;                      ///< t_upd: writing an object's properties
   double intersect = 0;                   ///< t_intersect: one level of moving an object in the octree
   double traverse = 0;                    ///< t_trav: visiting a node
   double cull_object = 0, cull_node = 0;  ///< t_fc: culling one
+  double list = 0;                        ///< bringing a slot of a chunk in order, when nothing is kept
   double record = 0;                      ///< t_buf: recording and sending a command
+  double record_kept = 0;                 ///< t_buf of a command that is kept: recording it
+  double ask = 0;                         ///< t_buf of a query: its box, begin and end
   double secondary = 0;                   ///< t_sec: sending a kept command buffer
   double state = 0;                       ///< t_state: a change of material
   double query = 0;                       ///< t_exec: executing a query
   double receive = 0;                     ///< t_recv: reading a result
   double empty_frame =
       0;  ///< T_0: what a frame costs with nothing in it; not in D, whose own predictions end there
+  double overlap = 1;  ///< share of the shorter of processor and device that is done beside the longer
 };
 
 /// What there is to do in a frame.
@@ -30,6 +35,7 @@ struct FrameCounts {
   double changed_share = 0;     ///< d_anim
   double moved_share = 0;       ///< d'_anim
   double nodes = 0;             ///< |H| that are visited
+  double boxes = 0;             ///< of nodes and chunks that are tested; D tests a box a node
   double height = 0;            ///< of the octree
   double drawn_objects = 0;     ///< |S_vis|
   double drawn_nodes = 0;       ///< |H_vis|
@@ -37,7 +43,7 @@ struct FrameCounts {
   double queried_nodes = 0;     ///< |H_q|
 };
 
-/// How a frame is drawn: h, g and q of (2.10).
+/// How a frame is drawn: h, g and q of (2.10), which sums what these say.
 struct Way {
   bool octree = false, kept = false, queries = false;
 };
@@ -48,6 +54,8 @@ struct Way {
 [[nodiscard]] double cull_octree_s(const FrameCounts& n, const TimeUnits& t);      ///< (2.15)
 [[nodiscard]] double cull_scene_s(const FrameCounts& n, const TimeUnits& t);       ///< (2.15), flat
 [[nodiscard]] double record_s(double commands, const TimeUnits& t);                ///< (2.16)
+[[nodiscard]] double record_kept_s(double commands, const TimeUnits& t);           ///< (2.16), of H_upd
+[[nodiscard]] double ask_s(const FrameCounts& n, const TimeUnits& t);              ///< (2.16), of H_q
 [[nodiscard]] double secondaries_s(const FrameCounts& n, const TimeUnits& t);      ///< (2.17)
 [[nodiscard]] double state_s(double materials, const TimeUnits& t);                ///< (2.18)
 [[nodiscard]] double execute_queries_s(const FrameCounts& n, const TimeUnits& t);  ///< (2.21)
@@ -61,14 +69,15 @@ struct Work {
 /// (2.19) vertices, (2.20) fragments: sum of count * unit.
 [[nodiscard]] double work_s(std::span<const Work> work);
 
-/// (2.10).
-[[nodiscard]] double cpu_s(const Way& way, const FrameCounts& n, const TimeUnits& t);
-
 struct GpuStages {
   double state_s = 0, vertices_s = 0, fragments_s = 0;
 };
+/// The longest of the stages, and what of the others is not done beside it: with overlap 1 D's maximum, with
+/// 0 the sum of vertices (state included) and fragments.
+[[nodiscard]] double beside_s(double a_s, double b_s, double overlap);
 /// (2.11): the longest stage of drawing, and of querying.
-[[nodiscard]] double gpu_s(const GpuStages& drawn, const GpuStages& queried, double execute_queries_s);
+[[nodiscard]] double gpu_s(const GpuStages& drawn, const GpuStages& queried, double execute_queries_s,
+                           double overlap = 1.0);
 
 /// (2.12) and T_0: one after the other with one primary command buffer, side by side with more.
 [[nodiscard]] double frame_s(double cpu_s, double gpu_s, std::uint32_t frames_in_flight, const TimeUnits& t);

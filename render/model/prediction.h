@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "render/model/frame_time.h"
 #include "render/model/unit_costs.h"
 
 namespace scenegen::render::model {
@@ -28,7 +29,7 @@ struct Load {
   double vertices = 0;
   double fragments = 0;       ///< (2.23), clamped to the screen each
   double textured_share = 0;  ///< of draws
-  double screen_share = 0;    ///< of the screen's pixels that end up covered, at most 1
+  double screen_share = 0;    ///< of the screen's pixels that end up covered, at most 1; 0: not known
 };
 
 /// Counts of one frame. Those of the way that was taken are exact; the others are estimates (`exact` says
@@ -38,10 +39,12 @@ struct FrameFacts {
   double visible_slots = 0;  ///< by timeline
   double changed = 0;        ///< entries of the ChangeSet
   double moved = 0;          ///< of them with another box
-  double blended_draws = 0;  ///< drawn the same way by all
   double screen_pixels = 0;  ///< times samples where shading is by sample
+  double shadow_slots = 0;   ///< drawn into the shadow map, in runs; the same for all ways
+  double shadow_vertices = 0;
 
-  // Loads are of opaque and masked slots; blended ones are counted apart.
+  // Loads are of opaque and masked slots; blended ones are counted apart and drawn the same way by all.
+  Load blended;
   Load visible;     ///< all that is visible by timeline
   Load in_frustum;  ///< by object
 
@@ -54,7 +57,8 @@ struct FrameFacts {
   double chunks_rerecorded = 0;
   double draws_rerecorded = 0;
 
-  // Queries. `queries` asks x* chunks, `queries_all` all chunks, `inline_queries` every slot in the frustum.
+  // Queries. `queries` asks x* chunks, `queries_all` all chunks; `inline_queries` asks about every slot in
+  // the frustum by its own box.
   double asked = 0;
   double asked_fragments = 0;      ///< of the queried boxes
   double chunks_hidden = 0;        ///< found hidden by them
@@ -62,6 +66,7 @@ struct FrameFacts {
   double all_asked_fragments = 0;  ///< if all chunks were asked
   double all_chunks_hidden = 0;    ///< and what would be hidden then
   Load all_hidden;
+  Load slots_hidden;  ///< slots that `inline_queries` found hidden, or would
 
   bool exact_inline = false, exact_octree = false, exact_queries = false;
 };
@@ -74,11 +79,13 @@ struct Prediction {
   double record_s = 0;         ///< T_buf
   double secondaries_s = 0;    ///< T_sec
   double queries_cpu_s = 0;    ///< T_buf(H_q) + T_recv(H_q)
-  double draw_device_s = 0;    ///< max(T_state, T_vert, T_frag)(S_vis)
-  double query_device_s = 0;   ///< max(..., T_exec)(H_q)
-  double cpu_s = 0;            ///< (2.10) + T_0
-  double gpu_s = 0;            ///< (2.11) + T_0
-  double frame_s = 0;          ///< (2.12)
+  double shadows_cpu_s = 0;    ///< walking and recording what casts shadows
+  double shadows_device_s = 0;
+  double draw_device_s = 0;   ///< max(T_state, T_vert, T_frag)(S_vis)
+  double query_device_s = 0;  ///< max(..., T_exec)(H_q)
+  double cpu_s = 0;           ///< (2.10) + T_0
+  double gpu_s = 0;           ///< (2.11) + T_0
+  double frame_s = 0;         ///< (2.12)
 };
 
 struct PredictionOptions {
@@ -87,6 +94,21 @@ struct PredictionOptions {
   bool indirect_nodes = false;  ///< chunks as indirect draws with a count instead of secondaries
 };
 
+/// How many of `load`'s fragments are shaded when they come in random order: of k layers over a pixel the
+/// i-th is in front of those before it with chance 1/i, so 1 + 1/2 + ... + 1/k. An unknown screen_share is
+/// taken from fragments that fall anywhere, 1 - exp(-fragments / pixels).
+struct Shaded {
+  double covered_share = 0;  ///< of the screen
+  double shaded = 0, hidden = 0;
+};
+[[nodiscard]] Shaded shaded_fragments(const Load& load, double screen_pixels);
+
+/// (2.18) to (2.20) of a load. The cost of a draw's commands is part of T_vert.
+[[nodiscard]] GpuStages device_stages(const Load& load, double screen_pixels, const UnitCosts& costs);
+
+/// What (2.10) to (2.12) give for a way of drawing; stages that it does not have are 0. Mended: T_0 is added
+/// (D's own predictions end there), sky that is covered is taken off it, and (2.11), (2.12) take as much of
+/// the shorter side as the device was seen not to do side by side (UnitCosts::stage_overlap, frame_overlap).
 [[nodiscard]] Prediction predict(Method method, const FrameFacts& facts, const UnitCosts& costs,
                                  const PredictionOptions& options);
 

@@ -116,13 +116,13 @@ double best_queries(const QueryProblem& p, bool side_by_side) {
 }
 
 double octree_recording_s(double nodes, double per_node, double rerecorded_share, const TimeUnits& t) {
-  return rerecorded_share * nodes * record_s(per_node, t) + nodes * t.secondary;
+  return rerecorded_share * nodes * record_kept_s(per_node, t) + nodes * t.secondary;
 }
 
 InlineOrOctree inline_or_octree(const FrameCounts& n, const TimeUnits& t) {
-  return {
-      record_s(n.drawn_objects, t) + cull_scene_s(n, t),
-      update_octree_s(n, t) + record_s(n.rerecorded_draws, t) + secondaries_s(n, t) + cull_octree_s(n, t)};
+  return {record_s(n.drawn_objects, t) + cull_scene_s(n, t), update_octree_s(n, t) +
+                                                                 record_kept_s(n.rerecorded_draws, t) +
+                                                                 secondaries_s(n, t) + cull_octree_s(n, t)};
 }
 
 }  // namespace scenegen::render::model

@@ -15,6 +15,15 @@ double Curve::at(double value) const {
   return y[above - 1] + share * (y[above] - y[above - 1]);
 }
 
+double Curve::line_at(double value) const {
+  if (x.empty()) return 0;
+  if (value <= x.front() || x.size() == 1) return y.front();
+  const auto found = static_cast<std::size_t>(std::upper_bound(x.begin(), x.end(), value) - x.begin());
+  const std::size_t above = std::min(found, x.size() - 1);
+  const double share = (value - x[above - 1]) / (x[above] - x[above - 1]);
+  return std::max(0.0, y[above - 1] + share * (y[above] - y[above - 1]));
+}
+
 UnitCosts rough_costs(bool software_device) {
   UnitCosts c;
   c.update_object_s = 100e-9;
@@ -42,8 +51,14 @@ UnitCosts rough_costs(bool software_device) {
   c.node_command_device_s = software_device ? 2e-6 : 0.3e-6;
   c.indirect_draw_s = software_device ? 1.3e-6 : 14e-9;
   c.skipped_draw_s = software_device ? 110e-9 : 10e-9;
-  c.query_s = software_device ? 8e-6 : 0.3e-6;
+  c.background_s = software_device ? 5e-9 : 10e-12;
+  c.query_s = software_device ? 10e-6 : 0.3e-6;
   c.second_part_device_s = software_device ? 100e-6 : 30e-6;
+  c.shadow_slot_s = 3e-9;
+  c.shadow_vertex_s = software_device ? 20e-9 : 0.5e-9;
+  c.stage_overlap = software_device ? 0.5 : 1.0;
+  c.frame_overlap = software_device ? 0.5 : 1.0;
+  c.latency_s = 40e-6;
   c.empty_device_s = software_device ? 2e-3 : 100e-6;
   return c;
 }

@@ -9,12 +9,16 @@
 
 namespace scenegen::render::model {
 
-/// Measured points, ascending in x > 0. Between them linear in log x (D takes the nearest test scene),
-/// outside them the first or last value.
+/// Measured points, ascending in x > 0; 0 everywhere without points. D takes the nearest test scene.
 struct Curve {
   std::vector<double> x;
   std::vector<double> y;
+  /// Between points linear in log x, outside them the first or last value: for a cost of one element that
+  /// depends on how many there are.
   [[nodiscard]] double at(double value) const;
+  /// Between points linear in x, before them the first value, behind them along the last two: for what a
+  /// thing of size x costs.
+  [[nodiscard]] double line_at(double value) const;
 };
 
 /// What shading depends on: one curve each is measured (D: t_vert, t_frag per material).
@@ -33,25 +37,34 @@ struct UnitCosts {
   double list_slot_s = 0;        ///< octree-record: bringing a slot of a chunk in order
   double record_s = 0;           ///< t_buf: a draw recorded in this frame, and sent
   double record_kept_s = 0;      ///< t_buf: a draw recorded into a kept command buffer, not sent
-  Curve secondary_s;             ///< t_sec: sending a kept command buffer, by draws in it
+  Curve secondary_s;             ///< t_sec: sending a kept command buffer, by draws in it (line_at)
   double node_command_s = 0;     ///< the other form of a node: sending one indirect draw with a count
   double write_indirect_s = 0;   ///< and writing one draw of it
   double ask_s = 0;              ///< t_buf: recording one query with its box, and sending it
   double receive_s = 0;          ///< t_recv: reading one result
   double second_part_cpu_s = 0;  ///< exact queries: what a pass in two parts costs more
-  double empty_cpu_s = 0;        ///< T_0: a frame with nothing in it
+  double shadow_slot_s = 0;      ///< walking and drawing one slot that casts a shadow
+  double empty_cpu_s = 0;        ///< T_0: a frame with nothing in it, copying its picture out included
 
   // Device.
-  std::array<Curve, kShadings> draw_s;  ///< t_state, t_vert: one draw, by vertices in it, hardly a fragment
-  std::array<Curve, kShadings> fragment_s;  ///< t_frag: one fragment, by the share of the screen covered
+  std::array<Curve, kShadings>
+      draw_s;  ///< t_state, t_vert: one draw, by vertices in it (line_at), hardly a fragment
+  std::array<Curve, kShadings> fragment_s;  ///< t_frag: one fragment, by the share of the screen covered (at)
   double hidden_fragment_s = 0;             ///< one that fails the depth test
+  double background_s = 0;                  ///< one of the sky: part of T_0 that whatever covers it saves
   double secondary_device_s = 0;            ///< executing a kept command buffer
   double node_command_device_s = 0;         ///< executing an indirect draw with a count, whatever is in it
   double indirect_draw_s = 0;               ///< one draw of it (instead of draw_s' part that is commands)
   double skipped_draw_s = 0;                ///< t_skip: a draw under a predicate that is 0
-  double query_s = 0;                       ///< t_exec: one query beyond its box
+  double query_s = 0;                       ///< t_exec: one query, its box included, hardly a fragment
   double second_part_device_s = 0;  ///< T_2: exact queries: copy, scatter, barriers, the pass's second part
+  double shadow_vertex_s = 0;       ///< one vertex in the shadow map's pass
   double empty_device_s = 0;        ///< T_0
+
+  // How far work is done side by side: 1 all of the shorter part, as (2.11) and (2.12) have it; 0 none.
+  double stage_overlap = 1;  ///< vertices with fragments
+  double frame_overlap = 1;  ///< processor with device, several frames in flight
+  double latency_s = 0;  ///< T_0: from submitting to being told of the end, beyond the work; one in flight
 };
 
 /// Costs of a machine that was not calibrated: lavapipe's on two cores, or those of a large GPU. Only the

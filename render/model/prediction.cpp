@@ -1,0 +1,221 @@
+#include "render/model/prediction.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace scenegen::render::model {
+namespace {
+
+/// Which parts of the facts a way of drawing makes use of.
+struct Taken {
+  Way way;
+  FrameCounts counts;
+  Load drawn;             // solid objects that the device really draws
+  double skipped = 0;     // draws under a predicate that is 0
+  double executed = 0;    // kept command buffers or node commands, hidden ones included
+  double listed = 0;      // slots of chunks that are brought in order
+  double hidden = 0;      // chunks drawn in a second part of the pass
+  double asked_area = 0;  // fragments of the boxes asked about
+};
+
+double mixed(const std::array<Curve, kShadings>& curves, double textured,
+             double (Curve::*value)(double) const, double x) {
+  const auto of = [&](Shading s) { return (curves[static_cast<std::size_t>(s)].*value)(x); };
+  return (1.0 - textured) * of(Shading::plain) + textured * of(Shading::textured);
+}
+
+/// The part of a draw that does not depend on its vertices.
+double command_s(const Load& load, const UnitCosts& c) {
+  return mixed(c.draw_s, load.textured_share, &Curve::line_at, 0.0);
+}
+
+Load without(Load load, const Load& part) {
+  load.draws = std::max(0.0, load.draws - part.draws);
+  load.vertices = std::max(0.0, load.vertices - part.vertices);
+  load.fragments = std::max(0.0, load.fragments - part.fragments);
+  return load;
+}
+
+Load together(const Load& a, const Load& b) {
+  Load sum = a;
+  sum.draws += b.draws;
+  sum.vertices += b.vertices;
+  sum.fragments += b.fragments;
+  if (sum.draws > 0.0)
+    sum.textured_share = (a.draws * a.textured_share + b.draws * b.textured_share) / sum.draws;
+  if (a.screen_share > 0.0 && b.screen_share > 0.0)
+    sum.screen_share = 1.0 - (1.0 - a.screen_share) * (1.0 - b.screen_share);
+  return sum;
+}
+
+/// `part` is everything that queries of this way hide.
+void take_queries(Taken& t, const FrameFacts& f, double asked, double chunks_hidden, const Load& part,
+                  bool exact) {
+  t.way.queries = true;
+  t.counts.queried_nodes = asked;
+  t.drawn = without(f.in_chunks, part);
+  if (exact) {
+    t.hidden = chunks_hidden;
+    t.skipped = part.draws;
+  } else {
+    t.executed -= chunks_hidden;
+  }
+}
+
+Taken take(Method method, const FrameFacts& f, const PredictionOptions& options) {
+  Taken t;
+  t.counts.objects = f.visible_slots;
+  t.counts.nodes = f.nodes_visited;
+  t.counts.boxes = f.boxes_tested;
+  t.counts.height = std::max(1.0, f.height);
+  if (f.visible_slots > 0.0) t.counts.changed_share = f.changed / f.visible_slots;
+  // The octree holds what is visible, so whatever changes is put in, taken out or moved.
+  t.counts.moved_share = t.counts.changed_share;
+  switch (method) {
+    case Method::brute:
+      t.drawn = f.visible;
+      break;
+    case Method::inline_frustum:
+      t.drawn = f.in_frustum;
+      break;
+    case Method::inline_queries:
+      t.drawn = without(f.in_frustum, f.slots_hidden);
+      t.way.queries = true;
+      t.counts.queried_nodes = f.in_frustum.draws;
+      t.asked_area = f.in_frustum.fragments;
+      break;
+    case Method::octree_record:
+      t.way.octree = true;
+      t.drawn = f.in_chunks;
+      t.listed = f.in_chunks.draws;
+      break;
+    case Method::octree:
+    case Method::queries_all:
+    case Method::queries:
+      t.way = {true, true, false};
+      t.drawn = f.in_chunks;
+      t.executed = f.chunks;
+      t.counts.rerecorded_draws = f.draws_rerecorded;
+      if (method == Method::queries_all) {
+        take_queries(t, f, f.chunks, f.all_chunks_hidden, f.all_hidden, options.exact);
+        t.asked_area = f.all_asked_fragments;
+      } else if (method == Method::queries) {
+        take_queries(t, f, f.asked, f.chunks_hidden, f.hidden, options.exact);
+        t.asked_area = f.asked_fragments;
+      }
+      break;
+  }
+  t.counts.drawn_nodes = t.executed;
+  t.counts.drawn_objects = t.drawn.draws;
+  return t;
+}
+
+TimeUnits units_of(const UnitCosts& c, const FrameFacts& f, const PredictionOptions& options) {
+  TimeUnits t;
+  t.update = c.update_object_s;
+  t.intersect = c.intersect_s;
+  t.traverse = c.visit_node_s;
+  t.cull_object = c.cull_slot_s;
+  t.cull_node = c.cull_node_s;
+  t.list = c.list_slot_s;
+  t.record = c.record_s;
+  t.record_kept = options.indirect_nodes ? c.write_indirect_s : c.record_kept_s;
+  const double per_chunk = f.chunks > 0.0 ? f.in_chunks.draws / f.chunks : 0.0;
+  t.secondary = options.indirect_nodes ? c.node_command_s : c.secondary_s.line_at(per_chunk);
+  t.ask = c.ask_s;
+  t.query = c.query_s;
+  t.receive = c.receive_s;
+  t.empty_frame = options.frames_in_flight <= 1 ? c.latency_s : 0.0;
+  t.overlap = c.frame_overlap;
+  return t;
+}
+
+/// Executing kept command buffers or node commands, beyond the draws in them.
+double nodes_device_s(const Taken& t, const UnitCosts& c, bool indirect) {
+  if (!indirect) return t.executed * c.secondary_device_s + t.skipped * c.skipped_draw_s;
+  // Its draws are commands of another kind; hidden ones are none at all.
+  return t.executed * c.node_command_device_s + t.drawn.draws * (c.indirect_draw_s - command_s(t.drawn, c));
+}
+
+}  // namespace
+
+std::string_view name_of(Method method) {
+  static constexpr std::array<std::string_view, kMethods> kNames{
+      "brute", "inline", "inline-queries", "octree-record", "octree", "queries-all", "queries"};
+  return kNames[static_cast<std::size_t>(method)];
+}
+
+Shaded shaded_fragments(const Load& load, double screen_pixels) {
+  if (load.fragments <= 0.0 || screen_pixels <= 0.0) return {};
+  Shaded out;
+  out.covered_share = load.screen_share > 0.0 ? std::min(1.0, load.screen_share)
+                                              : 1.0 - std::exp(-load.fragments / screen_pixels);
+  const double covered = out.covered_share * screen_pixels;
+  const double layers = std::max(1.0, load.fragments / covered);
+  // 1 + 1/2 + ... + 1/k as a smooth function of k, 1 at k = 1 (Euler's constant; error below 2 %).
+  constexpr double kEuler = 0.57721566;
+  const double harmonic = std::max(1.0, std::log(layers + 0.5) + kEuler);
+  out.shaded = std::min(load.fragments, covered * harmonic);
+  out.hidden = load.fragments - out.shaded;
+  return out;
+}
+
+GpuStages device_stages(const Load& load, double screen_pixels, const UnitCosts& c) {
+  if (load.draws <= 0.0) return {};
+  GpuStages out;
+  out.state_s = state_s(load.draws, {.state = command_s(load, c)});
+  const double per_draw = load.vertices / load.draws;
+  const std::array vertices{
+      Work{load.draws, mixed(c.draw_s, load.textured_share, &Curve::line_at, per_draw)}};
+  out.vertices_s = work_s(vertices);
+  const Shaded s = shaded_fragments(load, screen_pixels);
+  const std::array fragments{
+      Work{s.shaded, mixed(c.fragment_s, load.textured_share, &Curve::at, s.covered_share)},
+      Work{s.hidden, c.hidden_fragment_s}};
+  out.fragments_s = work_s(fragments);
+  return out;
+}
+
+Prediction predict(Method method, const FrameFacts& f, const UnitCosts& c, const PredictionOptions& options) {
+  const Taken taken = take(method, f, options);
+  const TimeUnits t = units_of(c, f, options);
+  const FrameCounts& n = taken.counts;
+  const Way& way = taken.way;
+  const bool asks = way.queries && n.queried_nodes > 0.0;
+
+  Prediction p;
+  p.update_s = update_scene_s(n, t);
+  if (way.octree) {
+    p.update_octree_s = update_octree_s(n, t);
+    p.cull_s = traverse_s(n, t) + cull_octree_s(n, t) + taken.listed * t.list;
+  } else if (method != Method::brute) {
+    p.cull_s = cull_scene_s(n, t);
+  }
+  p.record_s = record_s(f.blended.draws, t) +
+               (way.kept ? record_kept_s(n.rerecorded_draws, t) : record_s(taken.drawn.draws, t));
+  if (way.kept) p.secondaries_s = secondaries_s(n, t);
+  if (asks) {
+    p.queries_cpu_s = ask_s(n, t) + receive_queries_s(n, t);
+    if (taken.hidden > 0.0) p.queries_cpu_s += c.second_part_cpu_s;
+  }
+  p.shadows_cpu_s = f.shadow_slots * c.shadow_slot_s;
+  p.cpu_s = c.empty_cpu_s + p.update_s + p.update_octree_s + p.cull_s + p.record_s + p.secondaries_s +
+            p.queries_cpu_s + p.shadows_cpu_s;
+
+  const Load all = together(taken.drawn, f.blended);
+  p.shadows_device_s = f.shadow_vertices * c.shadow_vertex_s;
+  p.draw_device_s = gpu_s(device_stages(all, f.screen_pixels, c), {}, 0.0, c.stage_overlap) +
+                    (way.kept ? nodes_device_s(taken, c, options.indirect_nodes) : 0.0);
+  if (asks) {
+    const GpuStages boxes{0.0, 0.0, taken.asked_area * c.hidden_fragment_s};
+    p.query_device_s = gpu_s({}, boxes, execute_queries_s(n, t));
+    if (taken.hidden > 0.0) p.query_device_s += c.second_part_device_s;
+  }
+  const double sky_s =
+      shaded_fragments(all, f.screen_pixels).covered_share * f.screen_pixels * c.background_s;
+  p.gpu_s = std::max(0.0, c.empty_device_s - sky_s) + p.shadows_device_s + p.draw_device_s + p.query_device_s;
+  p.frame_s = frame_s(p.cpu_s, p.gpu_s, options.frames_in_flight, t);
+  return p;
+}
+
+}  // namespace scenegen::render::model

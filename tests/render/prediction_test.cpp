@@ -1,0 +1,201 @@
+// Predictions of whole frames against sums made by hand.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "render/model/prediction.h"
+
+using namespace scenegen::render::model;
+
+namespace {
+
+/// Round numbers, each of its own size, so that a term that is left out or doubled shows.
+UnitCosts units() {
+  UnitCosts c;
+  c.update_object_s = 2;
+  c.intersect_s = 3;
+  c.visit_node_s = 5;
+  c.cull_slot_s = 0.5;
+  c.cull_node_s = 7;
+  c.list_slot_s = 0.25;
+  c.record_s = 11;
+  c.record_kept_s = 13;
+  c.secondary_s = {{10, 20}, {100, 110}};
+  c.node_command_s = 17;
+  c.write_indirect_s = 19;
+  c.ask_s = 23;
+  c.receive_s = 29;
+  c.second_part_cpu_s = 1000;
+  c.shadow_slot_s = 0.125;
+  c.empty_cpu_s = 10'000;
+  c.draw_s = {Curve{{3, 36}, {40, 73}}, Curve{{3, 36}, {50, 116}}};  // 37 + v; 44 + 2 v from 3 on
+  c.fragment_s.fill({{0.5, 1}, {2, 2}});
+  c.hidden_fragment_s = 0.5;
+  c.background_s = 0.25;
+  c.secondary_device_s = 31;
+  c.node_command_device_s = 37;
+  c.indirect_draw_s = 41;
+  c.skipped_draw_s = 4;
+  c.query_s = 43;
+  c.second_part_device_s = 2000;
+  c.shadow_vertex_s = 0.0625;
+  c.empty_device_s = 20'000;
+  c.latency_s = 500;
+  return c;
+}
+
+/// Every pixel is covered once, so all fragments are shaded.
+FrameFacts facts() {
+  FrameFacts f;
+  f.objects = 2000;
+  f.visible_slots = 1000;
+  f.changed = 8;
+  f.moved = 2;
+  f.screen_pixels = 4000;
+  f.visible = {900, 900 * 36, 1000, 0, 0.25};
+  f.in_frustum = {100, 100 * 36, 1000, 0, 0.25};
+  f.height = 2;
+  f.nodes_visited = 30;
+  f.boxes_tested = 50;
+  f.chunks = 12;
+  f.in_chunks = {180, 180 * 36, 1000, 0, 0.25};  // 15 in each
+  f.chunks_rerecorded = 2;
+  f.draws_rerecorded = 30;
+  f.asked = 5;
+  f.asked_fragments = 20;
+  f.chunks_hidden = 3;
+  f.hidden = {45, 45 * 36, 0, 0, 0};
+  f.all_asked_fragments = 1100;
+  f.all_chunks_hidden = 8;
+  f.all_hidden = {120, 120 * 36, 0, 0, 0};
+  f.slots_hidden = {60, 60 * 36, 0, 0, 0};
+  return f;
+}
+
+constexpr PredictionOptions kOneByOne{1, true, false};
+constexpr double kSky = 1000 * 0.25;        // 1000 pixels of it are covered
+constexpr double kDraw = 73;                // 36 vertices, plain
+constexpr double kDevice = 20'000 - kSky;   // T_0 without that sky
+constexpr double kUpdate = 8 * 2;           // changed
+constexpr double kTree = 8 * 2 * 3;         // changed, height, t_intersect
+constexpr double kCull = 30 * 5 + 50 * 7;   // nodes, boxes
+constexpr double kSecondaries = 12 * 105.;  // 15 draws each
+
+}  // namespace
+
+TEST_CASE("predictions: names are those of the strategies") {
+  CHECK(name_of(Method::brute) == "brute");
+  CHECK(name_of(Method::inline_frustum) == "inline");
+  CHECK(name_of(Method::inline_queries) == "inline-queries");
+  CHECK(name_of(Method::octree_record) == "octree-record");
+  CHECK(name_of(Method::octree) == "octree");
+  CHECK(name_of(Method::queries_all) == "queries-all");
+  CHECK(name_of(Method::queries) == "queries");
+}
+
+TEST_CASE("predictions: ways that record each frame") {
+  const Prediction brute = predict(Method::brute, facts(), units(), kOneByOne);
+  CHECK(brute.cull_s == 0);
+  CHECK(brute.record_s == Approx(900 * 11));
+  CHECK(brute.cpu_s == Approx(10'000 + kUpdate + 9900));
+  CHECK(brute.draw_device_s == Approx(900 * kDraw));  // the vertices take longer than 1000 * 2
+  CHECK(brute.gpu_s == Approx(kDevice + 900 * kDraw));
+  CHECK(brute.frame_s == Approx(brute.cpu_s + brute.gpu_s + 500));
+
+  const Prediction in = predict(Method::inline_frustum, facts(), units(), kOneByOne);
+  CHECK(in.cull_s == Approx(500));
+  CHECK(in.cpu_s == Approx(10'000 + kUpdate + 500 + 1100));
+  CHECK(in.gpu_s == Approx(kDevice + 100 * kDraw));
+  CHECK(in.queries_cpu_s + in.query_device_s + in.secondaries_s + in.update_octree_s == 0);
+
+  const Prediction record = predict(Method::octree_record, facts(), units(), kOneByOne);
+  CHECK(record.update_octree_s == Approx(kTree));
+  CHECK(record.cull_s == Approx(kCull + 180 * 0.25));
+  CHECK(record.record_s == Approx(180 * 11));
+  CHECK(record.secondaries_s == 0);
+
+  const Prediction asking = predict(Method::inline_queries, facts(), units(), kOneByOne);
+  CHECK(asking.record_s == Approx(40 * 11));
+  CHECK(asking.queries_cpu_s == Approx(100 * (23 + 29)));
+  CHECK(asking.draw_device_s == Approx(40 * kDraw));
+  CHECK(asking.query_device_s == Approx(100 * 43));  // above 1000 * 0.5
+}
+
+TEST_CASE("predictions: ways that keep commands") {
+  const Prediction octree = predict(Method::octree, facts(), units(), kOneByOne);
+  CHECK(octree.record_s == Approx(30 * 13));
+  CHECK(octree.secondaries_s == Approx(kSecondaries));
+  CHECK(octree.cpu_s == Approx(10'000 + kUpdate + kTree + kCull + 390 + kSecondaries));
+  CHECK(octree.gpu_s == Approx(kDevice + 180 * kDraw + 12 * 31));
+
+  const Prediction all = predict(Method::queries_all, facts(), units(), kOneByOne);
+  CHECK(all.queries_cpu_s == Approx(12 * (23 + 29) + 1000));
+  CHECK(all.secondaries_s == Approx(kSecondaries));  // hidden ones are executed all the same
+  CHECK(all.draw_device_s == Approx(60 * kDraw + 12 * 31 + 120 * 4));
+  CHECK(all.query_device_s == Approx(1100 * 0.5 + 2000));  // above 12 * 43
+
+  const Prediction some = predict(Method::queries, facts(), units(), kOneByOne);
+  CHECK(some.queries_cpu_s == Approx(5 * (23 + 29) + 1000));
+  CHECK(some.draw_device_s == Approx(135 * kDraw + 12 * 31 + 45 * 4));
+  CHECK(some.query_device_s == Approx(5 * 43 + 2000));
+
+  const Prediction late = predict(Method::queries, facts(), units(), {1, false, false});
+  CHECK(late.queries_cpu_s == Approx(5 * (23 + 29)));
+  CHECK(late.secondaries_s == Approx(9 * 105));
+  CHECK(late.draw_device_s == Approx(135 * kDraw + 9 * 31));
+  CHECK(late.query_device_s == Approx(5 * 43));
+
+  const Prediction indirect = predict(Method::queries, facts(), units(), {1, true, true});
+  CHECK(indirect.record_s == Approx(30 * 19));
+  CHECK(indirect.secondaries_s == Approx(12 * 17));
+  CHECK(indirect.draw_device_s == Approx(135 * (kDraw - 40 + 41) + 12 * 37));
+
+  FrameFacts nothing = facts();
+  nothing.asked = nothing.chunks_hidden = 0;
+  nothing.hidden = {};
+  CHECK(predict(Method::queries, nothing, units(), kOneByOne).frame_s == Approx(octree.frame_s));
+}
+
+TEST_CASE("predictions: several frames in flight, overlaps, shadows, blended objects, textures") {
+  UnitCosts c = units();
+  FrameFacts f = facts();
+  const Prediction one = predict(Method::octree, f, c, kOneByOne);
+  CHECK(predict(Method::octree, f, c, {2, true, false}).frame_s == Approx(std::max(one.cpu_s, one.gpu_s)));
+  c.frame_overlap = 0.25;
+  CHECK(predict(Method::octree, f, c, {3, true, false}).frame_s ==
+        Approx(std::max(one.cpu_s, one.gpu_s) + 0.75 * std::min(one.cpu_s, one.gpu_s)));
+  c.stage_overlap = 0;
+  CHECK(predict(Method::octree, f, c, kOneByOne).gpu_s == Approx(one.gpu_s + 1000 * 2));
+
+  f.shadow_slots = 800;
+  f.shadow_vertices = 28'800;
+  const Prediction shaded = predict(Method::octree, f, units(), kOneByOne);
+  CHECK(shaded.cpu_s - one.cpu_s == Approx(100));
+  CHECK(shaded.gpu_s - one.gpu_s == Approx(1800));
+
+  f = facts();
+  f.blended = {10, 10 * 36, 0, 1, 0};
+  const Prediction glass = predict(Method::octree, f, units(), kOneByOne);
+  CHECK(glass.record_s - one.record_s == Approx(10 * 11));
+  CHECK(glass.draw_device_s - one.draw_device_s == Approx(10 * 116));
+}
+
+TEST_CASE("predictions: how many fragments are shaded") {
+  const auto shaded = [](double fragments, double share) {
+    return shaded_fragments({1, 3, fragments, 0, share}, 1000);
+  };
+  CHECK(shaded(0, 0).covered_share == 0);
+  CHECK(shaded(500, 0.5).shaded == Approx(500));  // one layer
+  CHECK(shaded(500, 0.5).hidden == Approx(0).margin(1e-9));
+  CHECK(shaded(1000, 0.5).shaded == Approx(500 * 1.5).epsilon(0.02));  // 1 + 1/2
+  CHECK(shaded(2000, 0.5).shaded == Approx(500 * (1 + 1 / 2. + 1 / 3. + 1 / 4.)).epsilon(0.02));
+  CHECK(shaded(2000, 0.5).shaded + shaded(2000, 0.5).hidden == Approx(2000));
+  // Anywhere on the screen: 1 - 1/e of it for as many fragments as pixels.
+  CHECK(shaded(1000, 0).covered_share == Approx(1 - std::exp(-1)));
+  CHECK(shaded(1e6, 0).covered_share == Approx(1));
+  // Hidden ones cost less: 4 layers over the whole screen.
+  const GpuStages s = device_stages({1, 36, 4000, 0, 1}, 1000, units());
+  CHECK(s.state_s == Approx(40));
+  CHECK(s.vertices_s == Approx(73));
+  const double layers = shaded(4000, 1).shaded;
+  CHECK(s.fragments_s == Approx(2 * layers + 0.5 * (4000 - layers)));
+}
