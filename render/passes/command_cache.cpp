@@ -60,6 +60,11 @@ void CommandCache::record(const PassRecording& pass, Kept& kept, std::span<const
   counters_.recorded_draws += recorder.draws();
 }
 
+bool CommandCache::fresh(std::uint32_t chunk, std::uint64_t revision) const {
+  const std::vector<Kept>& of_pass = kept_[kept_[0].empty() ? 1 : 0];
+  return chunk < of_pass.size() && *of_pass[chunk].owner && of_pass[chunk].revision == revision;
+}
+
 const CommandCache::Entry& CommandCache::get(const PassRecording& pass, std::uint32_t chunk,
                                              std::uint64_t revision, std::span<const std::uint32_t> slots,
                                              vk::Buffer predicates) {

@@ -31,6 +31,8 @@ class CommandCache {
   /// With `predicates`, the commands run only where the 32-bit value of the chunk there is not 0.
   const Entry& get(const PassRecording& pass, std::uint32_t chunk, std::uint64_t revision,
                    std::span<const std::uint32_t> slots, vk::Buffer predicates = {});
+  /// Would get() record nothing for this revision in the colour pass? (If that is not drawn: in the other.)
+  [[nodiscard]] bool fresh(std::uint32_t chunk, std::uint64_t revision) const;
   /// Nothing that was recorded is good any more (the picture has another size).
   void forget();
 

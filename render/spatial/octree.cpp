@@ -340,11 +340,16 @@ void Octree::touch_node(std::uint32_t number) {
   }
 }
 
-void Octree::refresh() {
-  for (const std::uint32_t number : dirty_chunks_) {
-    if (chunks_[number].dirty) refresh_chunk(chunks_[number]);
+bool Octree::refresh(std::size_t most_slots) {
+  std::size_t seen = 0;
+  while (!dirty_chunks_.empty()) {
+    Chunk& chunk = chunks_[dirty_chunks_.back()];
+    if (seen >= most_slots) return false;
+    dirty_chunks_.pop_back();
+    if (!chunk.dirty) continue;
+    seen += chunk.slots.size();
+    refresh_chunk(chunk);
   }
-  dirty_chunks_.clear();
   for (std::size_t level = dirty_nodes_.size(); level-- > 0;) {
     for (const std::uint32_t number : dirty_nodes_[level]) {
       // A number may have been freed, or be in use again at another level, where it is listed too.
@@ -352,6 +357,7 @@ void Octree::refresh() {
     }
     dirty_nodes_[level].clear();
   }
+  return true;
 }
 
 void Octree::refresh_chunk(Chunk& chunk) {

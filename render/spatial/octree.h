@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -83,8 +84,9 @@ class Octree {
   }
   [[nodiscard]] bool contains(std::uint32_t slot) const { return chunk_of_slot_[slot] != kNone; }
   void clear();
-  /// Recomputes boxes and sums of what changed. O(chunks touched * slots in them + their ancestors).
-  void refresh();
+  /// Recomputes boxes and sums of what changed. O(chunks touched * slots in them + their ancestors). Goes on
+  /// until it has seen about `most_slots` slots; false when something is left for the next call.
+  bool refresh(std::size_t most_slots = std::numeric_limits<std::size_t>::max());
 
   /// Appends the chunks that touch the frustum, those nearer to `eye_m` first, roughly. A node that is wholly
   /// inside a plane hands that on: its subtree is not tested against it.

@@ -10,11 +10,22 @@ namespace scenegen::render {
 /// Holds the visible opaque and masked slots. Blended ones are sorted every frame and live in no tree.
 class SceneOctree {
  public:
+  /// `in_slices`: nothing is in the tree before catch_up().
+  enum class Build : std::uint8_t { at_once, in_slices };
   /// Takes the scene's present state; the root is round everything, hidden or not.
-  SceneOctree(const DrawScene& scene, std::uint32_t slots_per_node);
+  SceneOctree(const DrawScene& scene, std::uint32_t slots_per_node, Build build = Build::at_once);
 
   /// After the scene took the changes. O(changes * height).
   void update(const timeline::ChangeSet& changes);
+  /// The same put off: only remembers which slots were touched. O(changes).
+  void note(const timeline::ChangeSet& changes);
+  /// Does about `slots` slots' worth of what was put off; true when nothing is left. Until then the tree is
+  /// of no use. What happened to a slot in between does not matter: it is compared with the scene as it is
+  /// now.
+  bool catch_up(std::size_t slots);
+  [[nodiscard]] bool behind() const { return pending_slots_ > 0 || !refreshed_; }
+  /// Slots put off.
+  [[nodiscard]] std::size_t pending() const { return pending_slots_; }
   [[nodiscard]] const Octree& tree() const { return tree_; }
 
  private:
@@ -23,6 +34,10 @@ class SceneOctree {
   const DrawScene& scene_;
   Octree tree_;
   BitSet mirrored_;  // as recorded: which way a slot's faces wind is part of its commands
+  BitSet pending_;
+  std::size_t pending_slots_ = 0;
+  std::size_t cursor_ = 0;  // word of pending_ to look at next
+  bool refreshed_ = true;
 };
 
 }  // namespace scenegen::render

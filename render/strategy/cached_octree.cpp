@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "render/strategy/estimate_load.h"
 #include "render/strategy/octree_choice.h"
 
 namespace scenegen::render {
@@ -10,7 +11,9 @@ std::unique_ptr<Strategy> make_inline(const StrategyContext& context);
 
 CachedOctree::CachedOctree(const StrategyContext& context) : context_(context), scene_(context.scene) {
   if (const auto fitting = choose_objects_per_node(context)) {
-    octree_.emplace(scene_, *fitting);
+    objects_per_node_ = *fitting;
+    octree_.emplace(scene_, *fitting,
+                    context.octree_in_slices ? SceneOctree::Build::in_slices : SceneOctree::Build::at_once);
     cache_.emplace(context.device, context.options.fail_after_buffers);
   } else {
     give_up("an octree with cached command buffers does not fit into " +
@@ -22,6 +25,14 @@ void CachedOctree::update(const timeline::ChangeSet& changes) {
   inline_ ? inline_->update(changes) : octree_->update(changes);
 }
 
+void CachedOctree::note(const timeline::ChangeSet& changes) {
+  inline_ ? inline_->update(changes) : octree_->note(changes);
+}
+
+bool CachedOctree::catch_up(std::size_t slots) {
+  return inline_ || octree_->catch_up(slots);
+}
+
 void CachedOctree::plan(const View& view) {
   view_ = view;
   counters_ = {};
@@ -30,13 +41,29 @@ void CachedOctree::plan(const View& view) {
   list_blended_in_frustum(scene_, planes, list_);
   sort_back_to_front(scene_, view, list_.blended);
   chunks_.clear();
-  OctreeCounters found;
-  tree().cull(planes, view.eye_m(), chunks_, found);
+  found_ = {};
+  tree().cull(planes, view.eye_m(), chunks_, found_);
   if (context_.options.reversed) std::reverse(chunks_.begin(), chunks_.end());
-  counters_.nodes = found.nodes;
-  counters_.tested = list_.tested + found.tests;
+  counters_.nodes = found_.nodes;
+  counters_.tested = list_.tested + found_.tests;
   counters_.drawn = list_.blended.size();
   for (const std::uint32_t chunk : chunks_) counters_.drawn += tree().chunk(chunk).slots.size();
+}
+
+void CachedOctree::foresee(model::FrameFacts& facts) const {
+  if (inline_) return;
+  facts.height = model::octree_height(tree().root().content.slots, objects_per_node_);
+  facts.nodes_visited = static_cast<double>(found_.nodes);
+  facts.boxes_tested = static_cast<double>(found_.tests);
+  facts.chunks = static_cast<double>(chunks_.size());
+  facts.in_chunks = load_of_chunks(scene_, tree(), chunks_, ScreenArea(view_, context_.size));
+  facts.chunks_rerecorded = facts.draws_rerecorded = 0;
+  for (const std::uint32_t number : chunks_) {
+    const Octree::Chunk& chunk = tree().chunk(number);
+    if (cache_->fresh(number, chunk.revision)) continue;
+    facts.chunks_rerecorded += 1;
+    facts.draws_rerecorded += static_cast<double>(chunk.slots.size());
+  }
 }
 
 void CachedOctree::draw_solid(PassRecording& pass) {

@@ -25,6 +25,23 @@ class CachedOctree : public Strategy {
   void draw_blended(DrawRecorder& recorder) override;
   void resized(glm::uvec2 size) override;
 
+  // For a strategy that draws some frames in another way; in the others it calls update() and plan() as
+  // usual.
+  /// Instead of update(), in a frame that is drawn otherwise: the changes are put off.
+  void note(const timeline::ChangeSet& changes);
+  /// Does about `slots` slots' worth of what was put off, or of building the tree; true when nothing is left.
+  /// Only then may plan() be called.
+  bool catch_up(std::size_t slots);
+  /// False: there was no memory for it, plan() goes on as `inline`.
+  [[nodiscard]] bool available() const { return !inline_; }
+  /// Objects a node holds.
+  [[nodiscard]] std::uint32_t objects_per_node() const { return objects_per_node_; }
+  [[nodiscard]] bool behind() const { return octree_ && octree_->behind(); }
+  [[nodiscard]] std::size_t pending() const { return octree_ ? octree_->pending() : 0; }
+  /// After plan(), before anything is drawn: what drawing the octree would find. All of it is exact but the
+  /// fragments. Fills the octree's part of `facts`.
+  void foresee(model::FrameFacts& facts) const;
+
  protected:
   /// Draws the chunks in the frustum, `chunks_`. What needs memory comes first: when it throws for want of
   /// it, the pass must not have begun.
@@ -44,6 +61,8 @@ class CachedOctree : public Strategy {
   void plan_inline();
 
   View view_;
+  std::uint32_t objects_per_node_ = 0;
+  OctreeCounters found_;
   std::optional<SceneOctree> octree_;
   std::optional<CommandCache> cache_;
   std::unique_ptr<Strategy> inline_;  // when there is no memory for the rest

@@ -30,6 +30,8 @@ struct StrategyContext {
       costs;  ///< may become better from frame to frame, never between plan() and draw_*()
   std::uint32_t frames_in_flight = 2;
   glm::uvec2 size{0};  ///< of the pictures, pixels; resized() tells another
+  /// An octree starts empty and is filled by CachedOctree::catch_up(), a slice a frame.
+  bool octree_in_slices = false;
 };
 
 /// What a frame took that was submitted some frames ago, seconds; gpu_s < 0: not measured.
