@@ -12,6 +12,8 @@ constexpr std::uint32_t kMostFramesInFlight = 3;
 constexpr std::uint64_t kMemoryBlockBytes = 64ULL << 20;
 // Staging for dirty records, per frame in flight; grows to what one frame needed.
 constexpr std::uint64_t kStagingBytes = 1ULL << 20;
+// Indirect draws of chunks come in blocks of this many, 20 B each.
+constexpr std::uint32_t kIndirectBlockCommands = 1U << 16;
 // Uploading geometry and textures goes through one buffer of this size.
 constexpr std::uint64_t kUploadBytes = 32ULL << 20;
 // Side of the shadow map: 4 B a texel, 36 MiB.

@@ -269,7 +269,9 @@ void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline:
   report.secondaries = counters.secondaries;
   report.recorded = counters.recorded;
   report.recorded_draws = counters.recorded_draws;
+  report.indirect_commands = counters.indirect_commands;
   report.queries = counters.queries;
+  report.answers = counters.answers;
   report.believed_hidden = counters.believed_hidden;
   report.found_hidden = counters.found_hidden;
   report.reveals = counters.reveals;

@@ -5,6 +5,13 @@
 
 namespace scenegen::render {
 
+/// How the draws of an octree's chunk are kept.
+enum class NodeForm : std::uint8_t {
+  automatic,    ///< what costs less on the device
+  secondaries,  ///< a secondary command buffer
+  indirect      ///< commands in device memory, drawn by one indirect draw for each pipeline state
+};
+
 struct StrategyOptions {
   bool reversed = false;  ///< draw solid slots in reverse order: finds pixels where equal depths meet
   std::uint32_t objects_per_node = 0;  ///< of the octree; 0: chosen so that it fits, from 200 on
@@ -13,9 +20,12 @@ struct StrategyOptions {
   /// Believe old results of occlusion queries instead of checking them in the same frame (as the dissertation
   /// does): saves work, and objects that come into view appear some frames too late.
   bool late_visibility = false;
+  NodeForm node_form = NodeForm::automatic;
+  /// For tests: as if the device had no indirect draws with a count.
+  bool no_indirect_draws = false;
   /// For tests: as if the device had no conditional rendering.
   bool no_conditional_rendering = false;
-  /// For tests: allocating more cached command buffers than this fails as if memory were out; 0: never.
+  /// For tests: keeping the commands of more chunks than this fails as if memory were out; 0: never.
   std::uint64_t fail_after_buffers = 0;
 };
 

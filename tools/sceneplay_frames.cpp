@@ -41,6 +41,7 @@ struct FramesRequest {
   std::uint32_t octree_n = 0;
   std::uint64_t octree_mib = 1024;
   bool late_visibility = false;
+  render::NodeForm node_form = render::NodeForm::automatic;
   std::uint32_t frames_in_flight = 2;
   bool full_barriers = false;
   std::string device;
@@ -180,8 +181,10 @@ ordered_json frame_json(const render::FrameReport& r, double seek_ms, double enc
           {"secondaries", r.secondaries},
           {"recorded", r.recorded},
           {"recordedDraws", r.recorded_draws},
+          {"indirectCommands", r.indirect_commands},
           {"queries", r.queries},
           {"believedHidden", r.believed_hidden},
+          {"answers", r.answers},
           {"foundHidden", r.found_hidden},
           {"reveals", r.reveals},
           {"drawn", r.drawn},
@@ -318,6 +321,7 @@ render::RendererOptions renderer_options(const FramesRequest& request) {
   o.how.objects_per_node = request.octree_n;
   o.how.octree_bytes = request.octree_mib << 20;
   o.how.late_visibility = request.late_visibility;
+  o.how.node_form = request.node_form;
   o.shadows = request.shadows;
   o.frames_in_flight = request.frames_in_flight;
   o.full_barriers = request.full_barriers;
@@ -411,6 +415,13 @@ void add_options(Options& options, FramesRequest& r) {
       "--octree-n", whole_value(r.octree_n, 0U, 100000U),
       "objects a node of the octree holds, and draws a kept command buffer; 0: the smallest from 200 on "
       "that fits");
+  options.add(
+      "--node-form",
+      choice_value<render::NodeForm>(r.node_form, {{"auto", render::NodeForm::automatic},
+                                                   {"secondaries", render::NodeForm::secondaries},
+                                                   {"indirect", render::NodeForm::indirect}}),
+      "how the octree's commands are kept: command buffers, or indirect draws in device memory; auto: "
+      "what costs less on the device");
   options.add("--octree-memory", whole_value(r.octree_mib, std::uint64_t{1}, std::uint64_t{1} << 20, "MIB"),
               "what --strategy octree may take; without room for it, inline is used");
   options.flag("--late-visibility", r.late_visibility,

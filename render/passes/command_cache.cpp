@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "render/passes/occlusion.h"
+
 namespace scenegen::render {
 
 CommandCache::CommandCache(const vkr::Device& device, std::uint64_t fail_after)
@@ -49,7 +51,7 @@ void CommandCache::record(const PassRecording& pass, Kept& kept, std::span<const
   // Neither is inherited: begun and ended in here, at a fixed place.
   if (kept.predicates) {
     kept.owner.beginConditionalRenderingEXT(
-        vk::ConditionalRenderingBeginInfoEXT(kept.predicates, std::uint64_t{4} * kept.chunk));
+        vk::ConditionalRenderingBeginInfoEXT(kept.predicates, predicate_offset(kept.chunk)));
   }
   DrawRecorder recorder(kept.owner, context.pipelines, context.gpu, context.scene, pass.target().pass);
   for (const std::uint32_t slot : slots) recorder.draw(slot);

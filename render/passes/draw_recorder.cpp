@@ -49,6 +49,21 @@ void DrawRecorder::draw_run(std::uint32_t first, std::uint32_t count) {
   if (range.kind == PrimitiveKind::triangles) triangles_ += std::uint64_t{range.index_count / 3} * count;
 }
 
+void DrawRecorder::draw_indirect(const IndirectDraws& draws) {
+  constexpr auto kStride = static_cast<std::uint32_t>(sizeof(VkDrawIndexedIndirectCommand));
+  const DrawPrimitive& primitive = scene_.primitive(draws.slot);
+  if (primitive.batch != batch_) bind_batch(primitive.batch);
+  set_winding(draws.slot, scene_.batches()[primitive.batch].state);
+  if (draws.counts) {
+    commands_.drawIndexedIndirectCount(draws.commands, draws.offset, draws.counts, draws.counts_offset,
+                                       draws.count, kStride);
+  } else {
+    commands_.drawIndexedIndirect(draws.commands, draws.offset, draws.count, kStride);
+  }
+  draws_ += draws.count;
+  triangles_ += draws.triangles;
+}
+
 void record_all_solid(DrawRecorder& recorder, const DrawScene& scene) {
   std::uint32_t run = 0;
   std::uint32_t length = 0;

@@ -10,6 +10,17 @@
 
 namespace scenegen::render {
 
+/// Draws that stand in device memory, all of one state.
+struct IndirectDraws {
+  std::uint32_t slot = 0;  ///< one of them
+  vk::Buffer commands;     ///< VkDrawIndexedIndirectCommand, one after the other
+  std::uint64_t offset = 0;
+  std::uint32_t count = 0;
+  std::uint64_t triangles = 0;
+  vk::Buffer counts;  ///< if given: no more are drawn than the 32-bit number there says
+  std::uint64_t counts_offset = 0;
+};
+
 class DrawRecorder {
  public:
   DrawRecorder(const vk::raii::CommandBuffer& commands, vkr::Pipelines& pipelines, const GpuScene& gpu,
@@ -18,6 +29,8 @@ class DrawRecorder {
   void draw(std::uint32_t slot) { draw_run(slot, 1); }
   /// Slots [first, first + count) at once; they must share a primitive and whether they are mirrored.
   void draw_run(std::uint32_t first, std::uint32_t count);
+
+  void draw_indirect(const IndirectDraws& draws);
 
   [[nodiscard]] std::uint64_t draws() const { return draws_; }
   [[nodiscard]] std::uint64_t triangles() const { return triangles_; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "render/shaders/scatter_comp.h"
 
@@ -10,9 +11,22 @@ namespace scenegen::render {
 using vkr::Use;
 using Usage = vk::BufferUsageFlagBits;
 
-Occlusion::Occlusion(const vkr::Device& device, bool predicates)
-    : device_(device), with_predicates_(predicates) {
-  if (with_predicates_) make_scatter();
+namespace {
+
+// A predicate that lets pass: also as a number of draws it is more than any chunk has.
+std::uint32_t let_all_pass(const vkr::Device& device) {
+  return std::min(device.properties.limits.maxDrawIndirectCount, 0x7FFFFFFFU);
+}
+
+struct ScatterConstants {
+  std::uint32_t count = 0;
+  std::uint32_t pass = 0;
+};
+
+}  // namespace
+
+Occlusion::Occlusion(const vkr::Device& device, Predicates predicates) : device_(device), form_(predicates) {
+  if (form_ != Predicates::none) make_scatter();
 }
 
 void Occlusion::make_scatter() {
@@ -23,8 +37,9 @@ void Occlusion::make_scatter() {
         vk::DescriptorSetLayoutBinding(i, Type::eStorageBuffer, 1, vk::ShaderStageFlagBits::eCompute);
   set_layout_ =
       vk::raii::DescriptorSetLayout(device_.device, vk::DescriptorSetLayoutCreateInfo({}, bindings));
-  const vk::PushConstantRange count(vk::ShaderStageFlagBits::eCompute, 0, sizeof(std::uint32_t));
-  layout_ = vk::raii::PipelineLayout(device_.device, vk::PipelineLayoutCreateInfo({}, *set_layout_, count));
+  const vk::PushConstantRange constants(vk::ShaderStageFlagBits::eCompute, 0, sizeof(ScatterConstants));
+  layout_ =
+      vk::raii::PipelineLayout(device_.device, vk::PipelineLayoutCreateInfo({}, *set_layout_, constants));
   const vk::raii::ShaderModule module(device_.device,
                                       vk::ShaderModuleCreateInfo({}, sizeof(kScatterComp), kScatterComp));
   const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main");
@@ -40,7 +55,7 @@ void Occlusion::make_scatter() {
 
 void Occlusion::describe(Place& p) {
   const std::array infos{vk::DescriptorBufferInfo(*p.results.buffer, 0, VK_WHOLE_SIZE),
-                         vk::DescriptorBufferInfo(*p.chunks.buffer, 0, VK_WHOLE_SIZE),
+                         vk::DescriptorBufferInfo(*p.governed.buffer, 0, VK_WHOLE_SIZE),
                          vk::DescriptorBufferInfo(*predicates_.buffer, 0, VK_WHOLE_SIZE)};
   device_.device.updateDescriptorSets(
       vk::WriteDescriptorSet(p.set, 0, 0, vk::DescriptorType::eStorageBuffer, {}, infos), {});
@@ -51,46 +66,55 @@ void Occlusion::reserve(const PassContext& context, std::size_t asked, std::size
   const bool more_queries = p.room < asked || !*p.pool;
   if (more_queries) {
     const auto room = static_cast<std::uint32_t>(std::max<std::size_t>(asked + asked / 2, 256));
+    p.room = 0;
+    p.asked.clear();
     p.pool =
         vk::raii::QueryPool(device_.device, vk::QueryPoolCreateInfo({}, vk::QueryType::eOcclusion, room));
-    p.room = room;
-    if (with_predicates_) {
-      p.chunks = {};
+    if (form_ != Predicates::none) {
       p.results = {};
-      p.chunks = context.memory.buffer(4ULL * room, Usage::eStorageBuffer, vkr::MemoryUse::upload);
-      p.results = context.memory.buffer(4ULL * room, Usage::eStorageBuffer | Usage::eTransferDst,
-                                        vkr::MemoryUse::device);
+      p.results = context.memory.buffer(sizeof(std::uint32_t) * std::uint64_t{room},
+                                        Usage::eStorageBuffer | Usage::eTransferDst, vkr::MemoryUse::device);
     }
+    p.room = room;
   }
-  if (!with_predicates_) return;
-  if (predicates_.bytes < 4 * chunks) {
+  if (form_ == Predicates::none) return;
+  // Each chunk is governed by one query at most.
+  if (p.governed.bytes < sizeof(Governed) * chunks) {
+    p.governed = {};
+    p.governed = context.memory.buffer(std::max<std::uint64_t>(2 * sizeof(Governed) * chunks, 4096),
+                                       Usage::eStorageBuffer, vkr::MemoryUse::upload);
+  }
+  if (predicates_.bytes < predicate_offset(static_cast<std::uint32_t>(chunks))) {
     if (*predicates_.buffer) old_predicates_.push_back(std::move(predicates_));
+    const auto read =
+        form_ == Predicates::conditional ? Usage::eConditionalRenderingEXT : Usage::eIndirectBuffer;
     predicates_ =
         context.memory.buffer(std::max<std::uint64_t>(8 * chunks, 4096),
-                              Usage::eStorageBuffer | Usage::eTransferDst | Usage::eConditionalRenderingEXT,
-                              vkr::MemoryUse::device);
+                              Usage::eStorageBuffer | Usage::eTransferDst | read, vkr::MemoryUse::device);
+    fresh_ = true;
   }
   describe(p);  // nothing that uses the set is running: it belongs to this frame
 }
 
-void Occlusion::begin_frame(const PassContext& context, std::span<const Asked> asked) {
+void Occlusion::begin_frame(const PassContext& context, std::span<const Asked> asked,
+                            std::span<const Governed> governed) {
   Place& p = place(context);
   p.asked.assign(asked.begin(), asked.end());
+  p.governed_count = static_cast<std::uint32_t>(governed.size());
   const vk::raii::CommandBuffer& commands = context.frame.commands;
   if (!p.asked.empty()) commands.resetQueryPool(*p.pool, 0, static_cast<std::uint32_t>(p.asked.size()));
-  if (!with_predicates_) return;
-  auto* chunks = reinterpret_cast<std::uint32_t*>(p.chunks.mapped());
-  for (std::size_t i = 0; i < p.asked.size(); ++i) chunks[i] = p.asked[i].chunk;
-  context.barriers.buffer(*predicates_.buffer, Use::predicate, Use::transfer_write).flush(commands);
-  commands.fillBuffer(*predicates_.buffer, 0, VK_WHOLE_SIZE, 1);
-  context.barriers.buffer(*predicates_.buffer, Use::transfer_write, Use::predicate).flush(commands);
+  if (form_ == Predicates::none) return;
+  std::copy(governed.begin(), governed.end(), reinterpret_cast<Governed*>(p.governed.mapped()));
+  if (form_ == Predicates::counts && !std::exchange(fresh_, false)) return;
+  context.barriers.buffer(*predicates_.buffer, read(), Use::transfer_write).flush(commands);
+  commands.fillBuffer(*predicates_.buffer, 0, VK_WHOLE_SIZE, let_all_pass(device_));
+  context.barriers.buffer(*predicates_.buffer, Use::transfer_write, read()).flush(commands);
 }
 
-vk::CommandBuffer Occlusion::boxes(const PassRecording& pass) {
+void Occlusion::record_boxes(const vk::raii::CommandBuffer& commands, const PassRecording& pass) {
   const PassContext& context = pass.context();
   const Place& p = place(context);
-  const vk::raii::CommandBuffer& commands = context.frame.secondary(device_);
-  begin_secondary(commands, context.pipelines, pass.target(), vk::CommandBufferUsageFlagBits::eOneTimeSubmit);
+  if (p.asked.empty()) return;
   commands.bindPipeline(vk::PipelineBindPoint::eGraphics, context.pipelines.box(pass.target().pass));
   context.gpu.bind_frame_set(commands, context.pipelines.box_layout());
   commands.setCullMode(vk::CullModeFlagBits::eNone);
@@ -103,26 +127,39 @@ vk::CommandBuffer Occlusion::boxes(const PassRecording& pass) {
     commands.draw(36, 1, 0, 0);
     commands.endQuery(*p.pool, i);
   }
+}
+
+void Occlusion::draw_boxes(const PassRecording& pass) {
+  record_boxes(pass.context().frame.commands, pass);
+}
+
+vk::CommandBuffer Occlusion::boxes(const PassRecording& pass) {
+  const PassContext& context = pass.context();
+  if (place(context).asked.empty()) return {};
+  const vk::raii::CommandBuffer& commands = context.frame.secondary(device_);
+  begin_secondary(commands, context.pipelines, pass.target(), vk::CommandBufferUsageFlagBits::eOneTimeSubmit);
+  record_boxes(commands, pass);
   commands.end();
   return *commands;
 }
 
 void Occlusion::set_predicates(const PassContext& context) {
   const Place& p = place(context);
-  const auto count = static_cast<std::uint32_t>(p.asked.size());
-  if (count == 0) return;
+  if (p.governed_count == 0) return;
+  const auto asked = static_cast<std::uint32_t>(p.asked.size());
   const vk::raii::CommandBuffer& commands = context.frame.commands;
   vkr::Barriers& barriers = context.barriers;
-  commands.copyQueryPoolResults(*p.pool, 0, count, *p.results.buffer, 0, sizeof(std::uint32_t),
+  commands.copyQueryPoolResults(*p.pool, 0, asked, *p.results.buffer, 0, sizeof(std::uint32_t),
                                 vk::QueryResultFlagBits::eWait);
   barriers.buffer(*p.results.buffer, Use::transfer_write, Use::compute_read)
-      .buffer(*predicates_.buffer, Use::predicate, Use::compute_write)
+      .buffer(*predicates_.buffer, read(), Use::compute_write)
       .flush(commands);
   commands.bindPipeline(vk::PipelineBindPoint::eCompute, *scatter_);
   commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *layout_, 0, p.set, {});
-  commands.pushConstants<std::uint32_t>(*layout_, vk::ShaderStageFlagBits::eCompute, 0, count);
-  commands.dispatch((count + 63) / 64, 1, 1);
-  barriers.buffer(*predicates_.buffer, Use::compute_write, Use::predicate).flush(commands);
+  commands.pushConstants<ScatterConstants>(*layout_, vk::ShaderStageFlagBits::eCompute, 0,
+                                           ScatterConstants{p.governed_count, let_all_pass(device_)});
+  commands.dispatch((p.governed_count + 63) / 64, 1, 1);
+  barriers.buffer(*predicates_.buffer, Use::compute_write, read()).flush(commands);
 }
 
 Occlusion::Answers Occlusion::take_answers(const PassContext& context) {

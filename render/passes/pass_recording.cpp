@@ -23,7 +23,12 @@ void PassRecording::begin(Form form) {
 }
 
 void PassRecording::end_first_part() {
-  assert(part_ == vkr::PassPart::first && form_ == Form::secondaries);
+  assert(part_ == vkr::PassPart::first && form_ != Form::not_begun);
+  if (recorder_) {  // what it bound is not to be relied on after this
+    draws_ += recorder_->draws();
+    triangles_ += recorder_->triangles();
+    recorder_.reset();
+  }
   context_.frame.commands.endRenderPass();
   part_ = vkr::PassPart::second;
   form_ = Form::not_begun;

@@ -382,6 +382,7 @@ void Octree::refresh_node(Node& node) {
     for (std::uint32_t i = 0; i < 8; ++i) add(sum, nodes_[node.first_child + i].content);
   }
   node.content = sum;
+  node.revision = ++revisions_;
   node.dirty = false;
 }
 
@@ -408,7 +409,8 @@ Cut cut(const CullPlanes& planes, std::uint32_t mask, const Box& box) {
 }  // namespace
 
 void Octree::cull(const CullPlanes& planes, const glm::vec3& eye_m, std::vector<std::uint32_t>& chunks,
-                  OctreeCounters& counters) const {
+                  OctreeCounters& counters, std::vector<OctreeVisit>* visits) const {
+  const auto count = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
   const auto visit = [&](const auto& self, std::uint32_t number, std::uint32_t mask) -> void {
     const Node& node = nodes_[number];
     if (node.content.slots == 0) return;
@@ -419,6 +421,8 @@ void Octree::cull(const CullPlanes& planes, const glm::vec3& eye_m, std::vector<
       if (node_cut.outside) return;
       mask = node_cut.mask;
     }
+    const std::size_t visit_at = visits != nullptr ? visits->size() : 0;
+    if (visits != nullptr) visits->push_back({number, count(chunks), 0, 0, 0});
     const bool alone = node.leaf() && node.chunks.size() == 1;  // its box is the node's
     for (const std::uint32_t chunk : node.chunks) {
       if (mask != 0 && !alone) {
@@ -427,11 +431,18 @@ void Octree::cull(const CullPlanes& planes, const glm::vec3& eye_m, std::vector<
       }
       chunks.push_back(chunk);
     }
-    if (node.leaf()) return;
+    if (visits != nullptr) (*visits)[visit_at].own_end = count(chunks);
+    const auto leave = [&] {
+      if (visits == nullptr) return;
+      (*visits)[visit_at].end_chunk = count(chunks);
+      (*visits)[visit_at].end_visit = count(*visits);
+    };
+    if (node.leaf()) return leave();
     std::uint32_t nearest = 0;
     for (int axis = 0; axis < 3; ++axis) nearest |= eye_m[axis] > node.centre_m[axis] ? 1U << axis : 0U;
     for (const std::uint32_t i : {0U, 1U, 2U, 4U, 3U, 5U, 6U, 7U})
       self(self, node.first_child + (i ^ nearest), mask);
+    leave();
   };
   visit(visit, 0, (1U << planes.count) - 1);
 }

@@ -18,6 +18,16 @@ struct OctreeCounters {
   std::uint64_t tests = 0;  ///< boxes (of nodes and chunks) tested against the frustum
 };
 
+/// A node that touches the frustum, in the order of a culling walk: what is below it follows it directly, in
+/// visits as in chunks.
+struct OctreeVisit {
+  std::uint32_t node = 0;
+  std::uint32_t first_chunk = 0;  ///< of the chunks found: its own, then those of nodes below
+  std::uint32_t own_end = 0;
+  std::uint32_t end_chunk = 0;
+  std::uint32_t end_visit = 0;  ///< of the visits
+};
+
 /// A slot lives in the deepest node whose cell contains its box: crossing one of a cell's dividing planes
 /// keeps it there, so no slot is in two places. What lies outside the root's cell lives in the root. A node
 /// that holds more than `slots_per_node` slots which would fit a child is split; a subtree that shrinks to
@@ -64,6 +74,7 @@ class Octree {
         kNone;                  ///< eight in a row; child i lies on the far side of axis a if bit a of i
     std::uint32_t fitting = 0;  ///< own slots that would fit a child
     std::uint32_t level = 0;
+    std::uint64_t revision = 0;         ///< changes with all that is in the subtree; never the same twice
     std::vector<std::uint32_t> chunks;  ///< along the Morton curve
     bool dirty = false;
     [[nodiscard]] bool leaf() const { return first_child == kNone; }
@@ -89,9 +100,10 @@ class Octree {
   bool refresh(std::size_t most_slots = std::numeric_limits<std::size_t>::max());
 
   /// Appends the chunks that touch the frustum, those nearer to `eye_m` first, roughly. A node that is wholly
-  /// inside a plane hands that on: its subtree is not tested against it.
+  /// inside a plane hands that on: its subtree is not tested against it. `visits`, if wanted, and `chunks`
+  /// start empty then.
   void cull(const CullPlanes& planes, const glm::vec3& eye_m, std::vector<std::uint32_t>& chunks,
-            OctreeCounters& counters) const;
+            OctreeCounters& counters, std::vector<OctreeVisit>* visits = nullptr) const;
 
   [[nodiscard]] std::uint32_t slots_per_node() const { return options_.slots_per_node; }
   /// Numbers below this may be chunks; those whose node is kNone are free.

@@ -10,15 +10,28 @@ namespace scenegen::render {
 std::unique_ptr<Strategy> make_inline(const StrategyContext& context);
 
 CachedOctree::CachedOctree(const StrategyContext& context) : context_(context), scene_(context.scene) {
+  choose_form();
   if (const auto fitting = choose_objects_per_node(context)) {
     objects_per_node_ = *fitting;
     octree_.emplace(scene_, *fitting,
                     context.octree_in_slices ? SceneOctree::Build::in_slices : SceneOctree::Build::at_once);
-    cache_.emplace(context.device, context.options.fail_after_buffers);
+    if (indirect_form_) {
+      nodes_.emplace(*fitting, context.options.fail_after_buffers);
+    } else {
+      cache_.emplace(context.device, context.options.fail_after_buffers);
+    }
   } else {
-    give_up("an octree with cached command buffers does not fit into " +
+    give_up("an octree with kept commands does not fit into " +
             std::to_string(context.options.octree_bytes >> 20) + " MiB (--octree-memory)");
   }
+}
+
+void CachedOctree::choose_form() {
+  indirect_form_ = indirect_nodes(context_);
+  if (context_.options.node_form == NodeForm::indirect && !indirect_form_)
+    warnings_.emplace_back(
+        "the device has no indirect draws with a count and a first instance; chunks are drawn as with "
+        "--node-form secondaries");
 }
 
 void CachedOctree::update(const timeline::ChangeSet& changes) {
@@ -41,9 +54,10 @@ void CachedOctree::plan(const View& view) {
   list_blended_in_frustum(scene_, planes, list_);
   sort_back_to_front(scene_, view, list_.blended);
   chunks_.clear();
+  visits_.clear();
   found_ = {};
-  tree().cull(planes, view.eye_m(), chunks_, found_);
-  if (context_.options.reversed) std::reverse(chunks_.begin(), chunks_.end());
+  tree().cull(planes, view.eye_m(), chunks_, found_, &visits_);
+  passes_ = 0;
   counters_.nodes = found_.nodes;
   counters_.tested = list_.tested + found_.tests;
   counters_.drawn = list_.blended.size();
@@ -60,7 +74,8 @@ void CachedOctree::foresee(model::FrameFacts& facts) const {
   facts.chunks_rerecorded = facts.draws_rerecorded = 0;
   for (const std::uint32_t number : chunks_) {
     const Octree::Chunk& chunk = tree().chunk(number);
-    if (cache_->fresh(number, chunk.revision)) continue;
+    if (indirect_form_ ? nodes_->fresh(number, chunk.revision) : cache_->fresh(number, chunk.revision))
+      continue;
     facts.chunks_rerecorded += 1;
     facts.draws_rerecorded += static_cast<double>(chunk.slots.size());
   }
@@ -70,15 +85,16 @@ void CachedOctree::draw_solid(PassRecording& pass) {
   if (!inline_) {
     std::string why;
     try {
+      ++passes_;
       return draw_chunks(pass);
     } catch (const vk::OutOfHostMemoryError& e) {
       why = e.what();
     } catch (const vk::OutOfDeviceMemoryError& e) {
       why = e.what();
     }
-    // What the cache holds may still be running: it stays until the end.
+    // What is kept may still be running: it stays until the end.
     octree_.reset();
-    give_up("no memory for cached command buffers (" + why + ")");
+    give_up("no memory for kept commands (" + why + ")");
     plan_inline();
   }
   inline_->draw_solid(pass);
@@ -91,8 +107,8 @@ void CachedOctree::draw_blended(DrawRecorder& recorder) {
 
 void CachedOctree::resized(glm::uvec2 size) {
   context_.size = size;
-  if (inline_) inline_->resized(size);
   if (cache_) cache_->forget();
+  if (inline_) inline_->resized(size);
 }
 
 void CachedOctree::give_up(const std::string& why) {
@@ -105,20 +121,82 @@ void CachedOctree::plan_inline() {
   counters_ = inline_->counters();
 }
 
-const CommandCache::Entry& CachedOctree::commands(PassRecording& pass, std::uint32_t number,
-                                                  vk::Buffer predicates) {
-  const Octree::Chunk& chunk = tree().chunk(number);
-  std::span<const std::uint32_t> slots = chunk.slots;
-  if (context_.options.reversed) {
-    reversed_.assign(slots.rbegin(), slots.rend());
-    slots = reversed_;
+model::FrameFacts CachedOctree::facts() const {
+  if (inline_) return inline_->facts();
+  model::FrameFacts facts;
+  const ScreenArea screen(view_, context_.size);
+  facts.blended = load_of_slots(scene_, list_.blended, screen);
+  add_scene_facts(scene_, screen, facts);
+  foresee(facts);
+  // Kept for each pass, as secondaries are; written once for all, as indirect draws are.
+  const double times = indirect_form_ ? 1.0 : std::max(1U, passes_);
+  facts.chunks_rerecorded = static_cast<double>(counters_.recorded) / times;
+  facts.draws_rerecorded = static_cast<double>(counters_.recorded_draws) / times;
+  facts.exact_octree = true;
+  return facts;
+}
+
+void CachedOctree::keep_secondaries(PassRecording& pass, std::span<const std::uint32_t> chunks,
+                                    vk::Buffer predicates) {
+  if (kept_.size() < tree().chunk_numbers()) kept_.resize(tree().chunk_numbers());
+  for (const std::uint32_t number : chunks) {
+    const Octree::Chunk& chunk = tree().chunk(number);
+    std::span<const std::uint32_t> slots = chunk.slots;
+    if (context_.options.reversed) {
+      reversed_.assign(slots.rbegin(), slots.rend());
+      slots = reversed_;
+    }
+    kept_[number] = cache_->get(pass, number, chunk.revision, slots, predicates);
   }
-  const CommandCache::Entry& entry = cache_->get(pass, number, chunk.revision, slots, predicates);
   const CommandCache::Counters recorded = cache_->take_counters();
-  ++counters_.secondaries;
   counters_.recorded += recorded.recorded;
   counters_.recorded_draws += recorded.recorded_draws;
-  return entry;
+}
+
+void CachedOctree::prepare(PassRecording& pass, std::span<const std::uint32_t> chunks,
+                           vk::Buffer predicates) {
+  if (!indirect_form_) return keep_secondaries(pass, chunks, predicates);
+  // All at once, for all passes of the frame: staging memory is written once a frame.
+  nodes_->update(pass.context(), tree(), chunks_, context_.options.reversed);
+  const IndirectNodes::Counters written = nodes_->take_counters();
+  counters_.recorded += written.written;
+  counters_.recorded_draws += written.written_draws;
+}
+
+void CachedOctree::execute(PassRecording& pass, std::span<const std::uint32_t> chunks,
+                           vk::CommandBuffer last) {
+  buffers_.clear();
+  std::uint64_t draws = 0;
+  std::uint64_t triangles = 0;
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
+    const CommandCache::Entry& entry = kept_[in_order(chunks, i)];
+    buffers_.push_back(entry.commands);
+    draws += entry.draws;
+    triangles += entry.triangles;
+  }
+  counters_.secondaries += chunks.size();
+  if (last) buffers_.push_back(last);
+  pass.execute(buffers_, draws, triangles);
+}
+
+void CachedOctree::draw(PassRecording& pass, std::span<const std::uint32_t> chunks, Occlusion* ask) {
+  if (!indirect_form_) return execute(pass, chunks, ask != nullptr ? ask->boxes(pass) : vk::CommandBuffer{});
+  DrawRecorder& recorder = pass.draws();
+  const vk::Buffer counts = ask != nullptr ? ask->predicates() : vk::Buffer{};
+  for (std::size_t i = 0; i < chunks.size(); ++i)
+    counters_.indirect_commands += nodes_->draw(recorder, in_order(chunks, i), counts, kLetPassOffset);
+  if (ask != nullptr) ask->draw_boxes(pass);
+}
+
+void CachedOctree::draw_under(PassRecording& pass, std::span<const std::uint32_t> chunks,
+                              const Occlusion& predicates) {
+  if (!indirect_form_) return execute(pass, chunks, {});
+  DrawRecorder& recorder = pass.draws();
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
+    const std::uint32_t chunk = in_order(chunks, i);
+    counters_.indirect_commands +=
+        nodes_->draw(recorder, chunk, predicates.predicates(), predicate_offset(chunk));
+  }
 }
 
 }  // namespace scenegen::render

@@ -3,19 +3,22 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "render/passes/command_cache.h"
+#include "render/passes/indirect_nodes.h"
+#include "render/passes/occlusion.h"
 #include "render/spatial/scene_octree.h"
 #include "render/strategy/draw_list.h"
 #include "render/strategy/strategy.h"
 
 namespace scenegen::render {
 
-/// Chunks of the octree are culled, and each has its draw commands in a secondary command buffer that is kept
-/// until its slots change. Without memory for that it goes on as `inline`. Derived classes say what is done
-/// with the chunks in the frustum.
+/// Chunks of the octree are culled, and the draw commands of each are kept until its slots change: in a
+/// secondary command buffer, or in device memory for indirect draws (NodeForm). Without memory for that it
+/// goes on as `inline`. Derived classes say what is done with the chunks in the frustum.
 class CachedOctree : public Strategy {
  public:
   explicit CachedOctree(const StrategyContext& context);
@@ -24,6 +27,7 @@ class CachedOctree : public Strategy {
   void draw_solid(PassRecording& pass) override;
   void draw_blended(DrawRecorder& recorder) override;
   void resized(glm::uvec2 size) override;
+  [[nodiscard]] model::FrameFacts facts() const override;
 
   // For a strategy that draws some frames in another way; in the others it calls update() and plan() as
   // usual.
@@ -46,28 +50,48 @@ class CachedOctree : public Strategy {
   /// Draws the chunks in the frustum, `chunks_`. What needs memory comes first: when it throws for want of
   /// it, the pass must not have begun.
   virtual void draw_chunks(PassRecording& pass) = 0;
-  /// The kept commands of a chunk; counts them.
-  [[nodiscard]] const CommandCache::Entry& commands(PassRecording& pass, std::uint32_t chunk,
-                                                    vk::Buffer predicates = {});
+
+  /// Before a pass begins: makes the commands of these chunks ready. With `predicates` they can be drawn
+  /// under them.
+  void prepare(PassRecording& pass, std::span<const std::uint32_t> chunks, vk::Buffer predicates = {});
+  /// Draws prepared chunks, then boxes if something is to be asked.
+  void draw(PassRecording& pass, std::span<const std::uint32_t> chunks, Occlusion* ask = nullptr);
+  /// The same in the second part of a pass, where its predicates say so.
+  void draw_under(PassRecording& pass, std::span<const std::uint32_t> chunks, const Occlusion& predicates);
+
+  /// Chunks are drawn by indirect draws, else from secondaries.
+  [[nodiscard]] bool indirect() const { return indirect_form_; }
   [[nodiscard]] const Octree& tree() const { return octree_->tree(); }
   [[nodiscard]] const View& view() const { return view_; }
 
   StrategyContext context_;
   const DrawScene& scene_;
-  std::vector<std::uint32_t> chunks_;
+  std::vector<std::uint32_t> chunks_;  ///< in the frustum; nearer ones first, roughly
+  std::vector<OctreeVisit> visits_;    ///< nodes they are in
 
  private:
+  void choose_form();
   void give_up(const std::string& why);
   void plan_inline();
+  void keep_secondaries(PassRecording& pass, std::span<const std::uint32_t> chunks, vk::Buffer predicates);
+  void execute(PassRecording& pass, std::span<const std::uint32_t> chunks, vk::CommandBuffer last);
+  [[nodiscard]] std::uint32_t in_order(std::span<const std::uint32_t> chunks, std::size_t i) const {
+    return chunks[context_.options.reversed ? chunks.size() - 1 - i : i];
+  }
 
   View view_;
   std::uint32_t objects_per_node_ = 0;
   OctreeCounters found_;
+  std::uint32_t passes_ = 0;  // drawn since the plan
+  bool indirect_form_ = false;
   std::optional<SceneOctree> octree_;
   std::optional<CommandCache> cache_;
+  std::optional<IndirectNodes> nodes_;
   std::unique_ptr<Strategy> inline_;  // when there is no memory for the rest
   DrawList list_;                     // blended only
   std::vector<std::uint32_t> reversed_;
+  std::vector<CommandCache::Entry> kept_;  // by chunk, of this pass
+  std::vector<vk::CommandBuffer> buffers_;
 };
 
 }  // namespace scenegen::render

@@ -141,4 +141,14 @@ model::Load load_of_chunks(const DrawScene& scene, const Octree& tree, std::span
   return load;
 }
 
+void add_scene_facts(const DrawScene& scene, const ScreenArea& screen, model::FrameFacts& facts) {
+  facts.objects = static_cast<double>(scene.object_count());
+  std::size_t visible = 0;
+  for (const std::uint64_t bits : scene.visible().words())
+    visible += static_cast<std::size_t>(std::popcount(bits));
+  facts.visible_slots = static_cast<double>(visible);
+  facts.screen_pixels = screen.pixels();
+  facts.visible = load_of_visible(scene, screen);
+}
+
 }  // namespace scenegen::render

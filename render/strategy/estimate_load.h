@@ -41,4 +41,7 @@ constexpr std::size_t kSampledSlots = 512;
 [[nodiscard]] model::Load load_of_chunks(const DrawScene& scene, const Octree& tree,
                                          std::span<const std::uint32_t> chunks, const ScreenArea& screen);
 
+/// What all ways of drawing know of the scene.
+void add_scene_facts(const DrawScene& scene, const ScreenArea& screen, model::FrameFacts& facts);
+
 }  // namespace scenegen::render

@@ -1,4 +1,4 @@
-// D method 2: chunks in the frustum are executed from kept commands.
+// D method 2: chunks in the frustum are drawn from kept commands.
 #include "render/strategy/cached_octree.h"
 
 namespace scenegen::render {
@@ -10,19 +10,9 @@ class OctreeStrategy final : public CachedOctree {
 
  private:
   void draw_chunks(PassRecording& pass) override {
-    buffers_.clear();
-    std::uint64_t draws = 0;
-    std::uint64_t triangles = 0;
-    for (const std::uint32_t chunk : chunks_) {
-      const CommandCache::Entry& entry = commands(pass, chunk);
-      buffers_.push_back(entry.commands);
-      draws += entry.draws;
-      triangles += entry.triangles;
-    }
-    pass.execute(buffers_, draws, triangles);
+    prepare(pass, chunks_);
+    draw(pass, chunks_);
   }
-
-  std::vector<vk::CommandBuffer> buffers_;
 };
 
 }  // namespace

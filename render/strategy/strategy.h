@@ -43,16 +43,18 @@ struct FrameTimes {
 
 /// What planning and drawing found, for the frame report.
 struct PlanCounters {
-  std::uint64_t tested = 0;           ///< boxes tested against the frustum
-  std::uint64_t drawn = 0;            ///< slots that are drawn
-  std::uint64_t nodes = 0;            ///< octree nodes visited
-  std::uint64_t secondaries = 0;      ///< cached secondary command buffers executed, in all passes
-  std::uint64_t recorded = 0;         ///< of them recorded anew
-  std::uint64_t recorded_draws = 0;   ///< draw commands in those
-  std::uint64_t queries = 0;          ///< occlusion queries sent, in all passes
-  std::uint64_t believed_hidden = 0;  ///< of them about what was believed hidden
-  std::uint64_t found_hidden = 0;     ///< results of earlier frames, read in this one, that say hidden
-  std::uint64_t reveals = 0;          ///< those that say visible of what was believed hidden
+  std::uint64_t tested = 0;             ///< boxes tested against the frustum
+  std::uint64_t drawn = 0;              ///< slots that are drawn
+  std::uint64_t nodes = 0;              ///< octree nodes visited
+  std::uint64_t secondaries = 0;        ///< cached secondary command buffers executed, in all passes
+  std::uint64_t recorded = 0;           ///< kept chunks recorded, or written for indirect draws, anew
+  std::uint64_t recorded_draws = 0;     ///< draw commands in those
+  std::uint64_t indirect_commands = 0;  ///< indirect draw commands in the place of secondaries
+  std::uint64_t queries = 0;            ///< occlusion queries sent, in all passes
+  std::uint64_t believed_hidden = 0;    ///< of them about what was believed hidden
+  std::uint64_t answers = 0;            ///< results of earlier frames, read in this one
+  std::uint64_t found_hidden = 0;       ///< results of earlier frames, read in this one, that say hidden
+  std::uint64_t reveals = 0;            ///< those that say visible of what was believed hidden
 };
 
 /// Knows neither files nor tracks. A frame: update() with a ChangeSet that DrawScene has taken, plan() on the

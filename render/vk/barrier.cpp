@@ -42,6 +42,8 @@ UseScope scope_of(Use use) {
     case Use::predicate:
       return {Stage::eConditionalRenderingEXT, Access::eConditionalRenderingReadEXT,
               vk::ImageLayout::eUndefined};
+    case Use::indirect:
+      return {Stage::eDrawIndirect, Access::eIndirectCommandRead, vk::ImageLayout::eUndefined};
     case Use::host_read:
       return {Stage::eHost, Access::eHostRead, vk::ImageLayout::eUndefined};
   }

@@ -166,6 +166,13 @@ bool has_conditional_rendering(const vk::raii::PhysicalDevice& physical) {
   return features.get<vk::PhysicalDeviceConditionalRenderingFeaturesEXT>().conditionalRendering != VK_FALSE;
 }
 
+bool has_indirect_nodes(const vk::raii::PhysicalDevice& physical) {
+  const auto all = physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
+  const vk::PhysicalDeviceFeatures& core = all.get<vk::PhysicalDeviceFeatures2>().features;
+  return core.multiDrawIndirect != VK_FALSE && core.drawIndirectFirstInstance != VK_FALSE &&
+         all.get<vk::PhysicalDeviceVulkan12Features>().drawIndirectCount != VK_FALSE;
+}
+
 void make_logical_device(vkr::Device& d) {
   const float priority = 1.0F;
   const vk::DeviceQueueCreateInfo queue({}, d.queue_family, 1, &priority);
@@ -175,7 +182,15 @@ void make_logical_device(vkr::Device& d) {
   v13.maintenance4 = VK_TRUE;  // every 1.3 device has it; compute shaders of SPIR-V 1.6 need it
   vk::PhysicalDeviceFeatures2 features;
   features.features.samplerAnisotropy = available.samplerAnisotropy;
-  features.pNext = &v13;
+  vk::PhysicalDeviceVulkan12Features v12;
+  if (has_indirect_nodes(d.physical)) {
+    features.features.multiDrawIndirect = VK_TRUE;
+    features.features.drawIndirectFirstInstance = VK_TRUE;
+    v12.drawIndirectCount = VK_TRUE;
+    d.indirect_nodes = true;
+  }
+  v12.pNext = &v13;
+  features.pNext = &v12;
   vk::DeviceCreateInfo create({}, queue);
   create.pNext = &features;
   vk::PhysicalDeviceConditionalRenderingFeaturesEXT conditional;

@@ -33,6 +33,7 @@ struct Device {
   DeviceInfo info;
   bool timestamps = false;
   bool conditional_rendering = false;
+  bool indirect_nodes = false;  ///< many indirect draws a command, with a count and a first instance
   float max_anisotropy = 1.0F;
 
   /// Errors and warnings reported so far, and forgets them.

@@ -17,6 +17,7 @@ enum class Use : std::uint8_t {
   compute_read,      ///< storage reads of compute shaders
   compute_write,     ///< storage writes of compute shaders
   predicate,         ///< read by conditional rendering
+  indirect,          ///< draw commands and their number, read by indirect draws
   host_read,         ///< read by the processor after the fence
 };
 

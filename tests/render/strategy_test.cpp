@@ -18,6 +18,53 @@ RendererOptions path_options(const std::string& strategy) {
   return o;
 }
 
+/// A strategy, with one of the forms in which chunks are kept.
+struct Way {
+  std::string strategy;
+  NodeForm form = NodeForm::secondaries;
+  [[nodiscard]] bool asks() const { return strategy.starts_with("queries"); }
+  [[nodiscard]] std::string name() const {
+    return strategy + (form == NodeForm::indirect ? ", indirect" : ", secondaries");
+  }
+  [[nodiscard]] RendererOptions options() const {
+    RendererOptions o = path_options(strategy);
+    o.how.node_form = form;
+    return o;
+  }
+};
+
+/// All that must draw what `brute` draws.
+std::vector<Way> exact_ways() {
+  std::vector<Way> out;
+  for (const StrategyEntry& entry : strategies()) {
+    if (entry.name == "brute") continue;
+    out.push_back({std::string(entry.name)});
+    if (entry.name == "octree" || out.back().asks())
+      out.push_back({std::string(entry.name), NodeForm::indirect});
+  }
+  return out;
+}
+
+struct Sums {
+  std::uint64_t drawn = 0, queries = 0, answers = 0, believed_hidden = 0, found_hidden = 0, reveals = 0;
+  std::uint64_t secondaries = 0, indirect_commands = 0;
+};
+Sums sums_of(const Run& run) {
+  Sums sums;
+  for (const FrameResult& frame : run.frames) {
+    const FrameReport& r = frame.report;
+    sums.drawn += r.drawn;
+    sums.queries += r.queries;
+    sums.answers += r.answers;
+    sums.believed_hidden += r.believed_hidden;
+    sums.found_hidden += r.found_hidden;
+    sums.reveals += r.reveals;
+    sums.secondaries += r.secondaries;
+    sums.indirect_commands += r.indirect_commands;
+  }
+  return sums;
+}
+
 }  // namespace
 
 TEST_CASE("every strategy gives brute's depth, ids and colours on six paths") {
@@ -27,27 +74,23 @@ TEST_CASE("every strategy gives brute's depth, ids and colours on six paths") {
       const Run brute = run_path(path, options);
       options.how.reversed = true;
       const Run backwards = run_path(path, options);
-      for (const StrategyEntry& entry : strategies()) {
-        if (entry.name == "brute") continue;
-        INFO(entry.name);
-        const Run run = run_path(path, path_options(std::string(entry.name)));
+      for (const Way& way : exact_ways()) {
+        INFO(way.name());
+        const Run run = run_path(path, way.options());
         const Difference d = difference(run, brute, backwards);
         CHECK(d.depth == 0);
         CHECK(d.ids == 0);
         CHECK(d.color == 0);
         CHECK(d.ties * 1000 <= d.pixels);
         CHECK(run.warnings.empty());
-        std::uint64_t drawn = 0, drawn_by_brute = 0, reveals = 0, hidden = 0;
-        for (std::size_t i = 0; i < run.frames.size(); ++i) {
-          drawn += run.frames[i].report.drawn;
-          drawn_by_brute += brute.frames[i].report.drawn;
-          reveals += run.frames[i].report.reveals;
-          hidden += run.frames[i].report.believed_hidden;
-        }
-        CHECK(drawn < drawn_by_brute);
+        const Sums sums = sums_of(run);
+        CHECK(sums.drawn < sums_of(brute).drawn);
         // What was believed hidden came into view on every path, and was drawn in the frame in which it did.
-        CHECK((reveals > 0) == (entry.name == "queries-all"));
-        CHECK((hidden > 100) == (entry.name == "queries-all"));
+        CHECK((sums.reveals > 0) == way.asks());
+        CHECK((sums.believed_hidden > 100) == way.asks());
+        const bool kept = way.asks() || way.strategy == "octree";
+        CHECK((sums.secondaries > 0) == (kept && way.form == NodeForm::secondaries));
+        CHECK((sums.indirect_commands > 0) == (kept && way.form == NodeForm::indirect));
       }
     }
   }
@@ -55,7 +98,8 @@ TEST_CASE("every strategy gives brute's depth, ids and colours on six paths") {
 
 TEST_CASE("octree keeps commands: nothing changed, nothing recorded; what changed is recorded alone") {
   const Path path = std::move(strategy_paths(40, 450)[2]);  // a still camera before vanishing walls
-  const Run run = run_path(path, path_options("octree"));
+  const Run run = run_path(path, Way{"octree"}.options());
+  const Run indirect = run_path(path, Way{"octree", NodeForm::indirect}.options());
   std::size_t quiet = 0, busy = 0;
   for (std::size_t i = 1; i < run.frames.size(); ++i) {
     const FrameReport& r = run.frames[i].report;
@@ -66,9 +110,13 @@ TEST_CASE("octree keeps commands: nothing changed, nothing recorded; what change
     CHECK(r.recorded <= 6 * r.changed);
     CHECK(r.recorded_draws <= 10 * r.recorded);
     CHECK(r.secondaries > 40);
+    // The draws of a chunk are written once for both passes.
+    CHECK(2 * indirect.frames[i].report.recorded == r.recorded);
+    CHECK(2 * indirect.frames[i].report.recorded_draws == r.recorded_draws);
     (r.changed == 0 ? quiet : busy) += 1;
   }
   CHECK(run.frames[0].report.recorded == run.frames[0].report.secondaries);
+  CHECK(2 * indirect.frames[0].report.recorded == run.frames[0].report.secondaries);
   CHECK(quiet > 0);
   CHECK(busy > 10);
 }
@@ -91,13 +139,21 @@ TEST_CASE("without memory for an octree, or when it runs out, octree draws as in
   const Run small = run_path(path, options);
   REQUIRE(small.warnings.size() == 1);
   CHECK(small.warnings[0].find("--octree-memory") != std::string::npos);
-  options = path_options("octree");
+  options = Way{"octree"}.options();
   options.how.fail_after_buffers = 128;  // in the middle of the path
   const Run failed = run_path(path, options);
-  REQUIRE(failed.warnings.size() == 1);
-  CHECK(failed.warnings[0].find("fault injected") != std::string::npos);
-  CHECK(failed.frames.back().report.secondaries == 0);
-  for (const Run* run : {&small, &failed}) {
+  options = Way{"octree", NodeForm::indirect}.options();
+  options.how.fail_after_buffers = 64;
+  const Run failed_indirect = run_path(path, options);
+  for (const Run* run : {&failed, &failed_indirect}) {
+    REQUIRE(run->warnings.size() == 1);
+    CHECK(run->warnings[0].find("fault injected") != std::string::npos);
+    const Sums sums = sums_of(*run);
+    CHECK(sums.secondaries + sums.indirect_commands > 0);
+    const FrameReport& last = run->frames.back().report;
+    CHECK(last.secondaries + last.indirect_commands == 0);
+  }
+  for (const Run* run : {&small, &failed, &failed_indirect}) {
     const Difference d = difference(*run, wanted, wanted);
     CHECK(d.depth + d.ids == 0);
   }
@@ -110,21 +166,25 @@ TEST_CASE(
       RendererOptions options = path_options("brute");
       options.outputs.color = false;
       const Run brute = run_path(path, options);
-      options = path_options("queries-all");
-      options.outputs.color = false;
-      options.how.late_visibility = true;
-      const Run late = run_path(path, options);
-      std::size_t missing = 0;
-      std::size_t wrong = 0;
-      for (std::size_t f = 0; f < brute.frames.size(); ++f) {
-        for (std::size_t i = 0; i < brute.frames[f].depth.size(); ++i) {
-          missing += late.frames[f].depth[i] < brute.frames[f].depth[i] ? 1 : 0;
-          wrong += late.frames[f].depth[i] > brute.frames[f].depth[i] ? 1 : 0;
+      for (const Way& way : exact_ways()) {
+        if (!way.asks()) continue;
+        INFO(way.name());
+        options = way.options();
+        options.outputs.color = false;
+        options.how.late_visibility = true;
+        const Run late = run_path(path, options);
+        std::size_t missing = 0;
+        std::size_t wrong = 0;
+        for (std::size_t f = 0; f < brute.frames.size(); ++f) {
+          for (std::size_t i = 0; i < brute.frames[f].depth.size(); ++i) {
+            missing += late.frames[f].depth[i] < brute.frames[f].depth[i] ? 1 : 0;
+            wrong += late.frames[f].depth[i] > brute.frames[f].depth[i] ? 1 : 0;
+          }
         }
+        CHECK(missing > 0);
+        CHECK(wrong == 0);
+        CHECK(late.warnings.empty());
       }
-      CHECK(missing > 0);
-      CHECK(wrong == 0);
-      CHECK(late.warnings.empty());
     }
   }
 }
@@ -137,12 +197,16 @@ TEST_CASE("queries are exact with four samples and one, and with full barriers")
     const Run brute = run_path(path, options);
     options.how.reversed = true;
     const Run backwards = run_path(path, options);
-    options = path_options("queries-all");
-    options.samples = samples;
-    options.full_barriers = samples == 1;
-    const Run run = run_path(path, options);
-    const Difference d = difference(run, brute, backwards);
-    CHECK(d.depth + d.ids + d.color == 0);
+    for (const Way& way : exact_ways()) {
+      if (!way.asks()) continue;
+      INFO(way.name() << ", samples " << samples);
+      options = way.options();
+      options.samples = samples;
+      options.full_barriers = samples == 1;
+      const Run run = run_path(path, options);
+      const Difference d = difference(run, brute, backwards);
+      CHECK(d.depth + d.ids + d.color == 0);
+    }
   }
 }
 
@@ -182,12 +246,33 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a device without conditional rendering falls back to late visibility, with a warning") {
-  const Path path = std::move(strategy_paths(6, 450)[0]);
+TEST_CASE(
+    "without conditional rendering queries stay exact by indirect draws; without those too they come late") {
+  const Path path = std::move(strategy_paths(12, 450)[0]);
+  const Run brute = run_path(path, path_options("brute"));
   RendererOptions options = path_options("queries-all");
   options.how.no_conditional_rendering = true;
   const Run run = run_path(path, options);
+  CHECK(run.warnings.empty());
+  CHECK(sums_of(run).reveals > 0);
+  CHECK(sums_of(run).indirect_commands > 0);
+  CHECK(difference(run, brute, brute).depth == 0);
+  options.how.no_indirect_draws = true;
+  const Run late = run_path(path, options);
+  REQUIRE(late.warnings.size() == 1);
+  CHECK(late.warnings[0].find("--late-visibility") != std::string::npos);
+  CHECK(late.frames.back().report.queries > 0);
+  CHECK(difference(late, brute, brute).depth > 0);
+}
+
+TEST_CASE("indirect draws that the device does not have are warned of when they were asked for") {
+  const Path path = std::move(strategy_paths(2, 450)[0]);
+  RendererOptions options = Way{"octree", NodeForm::indirect}.options();
+  options.how.no_indirect_draws = true;
+  const Run run = run_path(path, options);
   REQUIRE(run.warnings.size() == 1);
-  CHECK(run.warnings[0].find("--late-visibility") != std::string::npos);
-  CHECK(run.frames.back().report.queries > 0);
+  CHECK(run.warnings[0].find("--node-form") != std::string::npos);
+  CHECK(run.frames.back().report.secondaries > 0);
+  options.how.node_form = NodeForm::automatic;
+  CHECK(run_path(path, options).warnings.empty());
 }

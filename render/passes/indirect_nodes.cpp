@@ -1,0 +1,135 @@
+#include "render/passes/indirect_nodes.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace scenegen::render {
+
+using vkr::Use;
+
+IndirectNodes::IndirectNodes(std::uint32_t most_draws, std::uint64_t fail_after)
+    : unit_((most_draws + kSizes - 1) / kSizes),
+      block_commands_(std::max(kIndirectBlockCommands, kSizes * unit_)),
+      fail_after_(fail_after) {}
+
+IndirectNodes::Place IndirectNodes::take(const PassContext& context, std::uint32_t draws) {
+  assert(draws > 0 && draws <= kSizes * unit_);
+  // As in CommandCache: one that waits holds back those behind it for a frame or two, no more.
+  while (!retired_.empty() && retired_.front().last_used <= context.completed) {
+    const Place& place = retired_.front().place;
+    free_[place.size].push_back(place);
+    retired_.pop_front();
+  }
+  const std::uint32_t size = (draws + unit_ - 1) / unit_;
+  if (!free_[size].empty()) {
+    const Place place = free_[size].back();
+    free_[size].pop_back();
+    return place;
+  }
+  if (fail_after_ != 0 && places_ >= fail_after_)
+    throw vk::OutOfDeviceMemoryError("allocating indirect draws (fault injected)");
+  if (blocks_.empty() || used_ + size * unit_ > block_commands_) {
+    using Usage = vk::BufferUsageFlagBits;
+    blocks_.push_back(context.memory.buffer(sizeof(Command) * std::uint64_t{block_commands_},
+                                            Usage::eIndirectBuffer | Usage::eTransferDst,
+                                            vkr::MemoryUse::device));
+    used_ = 0;
+  }
+  const Place place{static_cast<std::uint32_t>(blocks_.size()) - 1, used_, size};
+  used_ += size * unit_;
+  ++places_;
+  return place;
+}
+
+IndirectNodes::Command* IndirectNodes::stage(const PassContext& context, std::uint64_t commands) {
+  vkr::Buffer& staging = staging_[context.frame.serial % context.frames_in_flight];
+  const std::uint64_t bytes = sizeof(Command) * commands;
+  // The frame that used it is done. A first frame writes all there is: that much is not kept for ever.
+  if (staging.bytes < bytes || (staging.bytes > kStagingBytes && staging.bytes / 16 > bytes)) {
+    staging = {};
+    staging = context.memory.buffer(std::max(bytes + bytes / 2, kStagingBytes / 4),
+                                    vk::BufferUsageFlagBits::eTransferSrc, vkr::MemoryUse::upload);
+  }
+  return reinterpret_cast<Command*>(staging.mapped());
+}
+
+void IndirectNodes::write(const PassContext& context, const Octree::Chunk& chunk, Kept& kept, bool reversed,
+                          Command* commands) const {
+  const DrawScene& scene = context.scene;
+  const std::uint32_t longest = context.device.properties.limits.maxDrawIndirectCount;
+  kept.runs.clear();
+  std::uint32_t written = 0;
+  for (std::size_t i = 0; i < chunk.slots.size(); ++i) {
+    const std::uint32_t slot = chunk.slots[reversed ? chunk.slots.size() - 1 - i : i];
+    const DrawPrimitive& primitive = scene.primitive(slot);
+    const GeometryRange& range = context.gpu.range(primitive.geometry);
+    if (range.index_count == 0) continue;
+    const bool same = !kept.runs.empty() && scene.primitive(kept.runs.back().slot).batch == primitive.batch &&
+                      scene.mirrored(kept.runs.back().slot) == scene.mirrored(slot) &&
+                      kept.runs.back().count < longest;
+    if (!same) kept.runs.push_back({slot, written, 0, 0});
+    Run& run = kept.runs.back();
+    ++run.count;
+    if (range.kind == PrimitiveKind::triangles) run.triangles += range.index_count / 3;
+    commands[written++] = {range.index_count, 1, range.first_index, range.vertex_offset, slot};
+  }
+}
+
+void IndirectNodes::update(const PassContext& context, const Octree& tree,
+                           std::span<const std::uint32_t> chunks, bool reversed) {
+  if (kept_.size() < tree.chunk_numbers()) kept_.resize(std::max(tree.chunk_numbers(), 2 * kept_.size()));
+  changed_.clear();
+  std::uint64_t draws = 0;
+  for (const std::uint32_t number : chunks) {
+    Kept& kept = kept_[number];
+    if (!fresh(number, tree.chunk(number).revision)) {
+      changed_.push_back(number);
+      draws += tree.chunk(number).slots.size();
+    } else {
+      kept.last_used = context.frame.serial;
+    }
+  }
+  if (changed_.empty()) return;
+  Command* staged = stage(context, draws);
+  const vkr::Buffer& staging = staging_[context.frame.serial % context.frames_in_flight];
+  std::uint64_t from = 0;
+  for (const std::uint32_t number : changed_) {
+    const Octree::Chunk& chunk = tree.chunk(number);
+    Kept& kept = kept_[number];
+    if (kept.place.size != 0) retired_.push_back({kept.place, kept.last_used});
+    kept.place = {};
+    const auto count = static_cast<std::uint32_t>(chunk.slots.size());
+    kept.place = take(context, count);
+    write(context, chunk, kept, reversed, staged + from);
+    copies_.resize(blocks_.size());
+    copies_[kept.place.block].emplace_back(from * sizeof(Command), kept.place.first * sizeof(Command),
+                                           count * sizeof(Command));
+    kept.revision = chunk.revision;
+    kept.last_used = context.frame.serial;
+    from += count;
+  }
+  for (std::size_t block = 0; block < copies_.size(); ++block) {
+    if (copies_[block].empty()) continue;
+    const vk::Buffer to = *blocks_[block].buffer;
+    context.frame.commands.copyBuffer(*staging.buffer, to, copies_[block]);
+    context.barriers.buffer(to, Use::transfer_write, Use::indirect);
+    copies_[block].clear();
+  }
+  context.barriers.flush(context.frame.commands);
+  counters_.written += changed_.size();
+  counters_.written_draws += draws;
+  counters_.written_bytes += draws * sizeof(Command);
+}
+
+std::uint32_t IndirectNodes::draw(DrawRecorder& recorder, std::uint32_t chunk, vk::Buffer counts,
+                                  std::uint64_t counts_offset) const {
+  const Kept& kept = kept_[chunk];
+  for (const Run& run : kept.runs) {
+    const std::uint64_t offset = (std::uint64_t{kept.place.first} + run.first) * sizeof(Command);
+    recorder.draw_indirect({run.slot, *blocks_[kept.place.block].buffer, offset, run.count, run.triangles,
+                            counts, counts_offset});
+  }
+  return static_cast<std::uint32_t>(kept.runs.size());
+}
+
+}  // namespace scenegen::render

@@ -1,0 +1,94 @@
+// Draw commands of chunks that are kept in device memory (METHODS 6b): the other form of a kept chunk.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <vector>
+#include <vulkan/vulkan_raii.hpp>
+
+#include "render/config.h"
+#include "render/passes/pass_recording.h"
+#include "render/spatial/octree.h"
+
+namespace scenegen::render {
+
+/// A chunk is one place with a VkDrawIndexedIndirectCommand a slot, the same for all passes, cut into runs of
+/// one pipeline state: each run is drawn by one command straight in the primary command buffer. A place that
+/// a frame in flight may still read is never written: a chunk that changed gets another, and the old one
+/// waits for the last frame that used it. 20 B a slot, and an eighth of `most_draws` more at most.
+class IndirectNodes {
+ public:
+  /// `most_draws` of a chunk. `fail_after`: throws out-of-memory when more places are wanted than this (0:
+  /// never): for tests.
+  IndirectNodes(std::uint32_t most_draws, std::uint64_t fail_after);
+
+  /// Draws of one state: `count` commands from `first` of the chunk's on.
+  struct Run {
+    std::uint32_t slot = 0;  ///< one of them
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;
+    std::uint64_t triangles = 0;
+  };
+
+  /// Before a pass begins: writes the draws of those of `chunks` that changed, and remembers that this frame
+  /// uses all of them. Throws vk::SystemError when there is no memory.
+  void update(const PassContext& context, const Octree& tree, std::span<const std::uint32_t> chunks,
+              bool reversed);
+  /// Would update() write nothing for this revision?
+  [[nodiscard]] bool fresh(std::uint32_t chunk, std::uint64_t revision) const {
+    return chunk < kept_.size() && kept_[chunk].place.size != 0 && kept_[chunk].revision == revision;
+  }
+  /// Draws a chunk that update() was told of; returns the number of commands. With `counts`, only if the
+  /// 32-bit number at `offset` there is not 0.
+  std::uint32_t draw(DrawRecorder& recorder, std::uint32_t chunk, vk::Buffer counts = {},
+                     std::uint64_t offset = 0) const;
+
+  /// Since the last call.
+  struct Counters {
+    std::uint64_t written = 0;        ///< chunks
+    std::uint64_t written_draws = 0;  ///< draws in them
+    std::uint64_t written_bytes = 0;
+  };
+  [[nodiscard]] Counters take_counters() { return std::exchange(counters_, {}); }
+
+ private:
+  using Command = VkDrawIndexedIndirectCommand;
+  struct Place {
+    std::uint32_t block = 0;
+    std::uint32_t first = 0;  // command of the block
+    std::uint32_t size = 0;   // in units; 0: none
+  };
+  struct Kept {
+    Place place;
+    std::uint64_t revision = 0;
+    std::uint64_t last_used = 0;  // serial of a frame
+    std::vector<Run> runs;
+  };
+  struct Retired {
+    Place place;
+    std::uint64_t last_used;
+  };
+  Place take(const PassContext& context, std::uint32_t draws);
+  void write(const PassContext& context, const Octree::Chunk& chunk, Kept& kept, bool reversed,
+             Command* commands) const;
+  /// Mapped memory of this frame for so many commands.
+  Command* stage(const PassContext& context, std::uint64_t commands);
+
+  static constexpr std::uint32_t kSizes = 8;
+  std::uint32_t unit_;  // commands in an eighth of a chunk with the most draws
+  std::uint32_t block_commands_;
+  std::uint64_t fail_after_;
+  std::uint64_t places_ = 0;
+  std::vector<vkr::Buffer> blocks_;
+  std::uint32_t used_ = 0;  // commands of the last block
+  std::vector<Place> free_[kSizes + 1];
+  std::deque<Retired> retired_;
+  std::vector<Kept> kept_;                           // by chunk
+  vkr::Buffer staging_[kMostFramesInFlight];         // of each frame in flight
+  std::vector<std::uint32_t> changed_;               // scratch
+  std::vector<std::vector<vk::BufferCopy>> copies_;  // scratch, by block
+  Counters counters_;
+};
+
+}  // namespace scenegen::render

@@ -1,0 +1,74 @@
+#include "render/strategy/query_octree.h"
+
+#include "render/strategy/estimate_load.h"
+#include "render/strategy/octree_choice.h"
+
+namespace scenegen::render {
+
+QueryOctree::QueryOctree(const StrategyContext& context) : CachedOctree(context) {
+  exact_ = !context.options.late_visibility;
+  const bool conditional = context.device.conditional_rendering && !context.options.no_conditional_rendering;
+  if (exact_ && !indirect() && !conditional) {
+    exact_ = false;
+    warnings_.emplace_back(
+        "the device has no conditional rendering, which --node-form secondaries needs; drawn as with "
+        "--late-visibility: what comes into view may appear some frames too late");
+  }
+  for (std::unique_ptr<Occlusion>& of_pass : occlusion_)
+    of_pass = std::make_unique<Occlusion>(context.device, predicates());
+}
+
+Predicates QueryOctree::predicates() const {
+  if (!exact_) return Predicates::none;
+  return indirect() ? Predicates::counts : Predicates::conditional;
+}
+
+void QueryOctree::draw_chunks(PassRecording& pass) {
+  const PassContext& context = pass.context();
+  const Kind kind = pass.target().pass == vkr::PassKind::color ? color : ids;
+  Occlusion& occlusion = *occlusion_[kind];
+  const Occlusion::Answers answers = occlusion.take_answers(context);
+  counters_.answers += answers.asked.size();
+  for (std::size_t i = 0; i < answers.asked.size(); ++i) {
+    const bool hidden = answers.samples[i] == 0;
+    counters_.found_hidden += hidden ? 1 : 0;
+    counters_.reveals += !hidden && answers.asked[i].believed_hidden ? 1 : 0;
+  }
+  learn(kind, answers);
+
+  QueryPlan& plan = plans_[kind];
+  plan.clear();
+  choose(kind, QueryBoxes(view(), {pass.target().extent.width, pass.target().extent.height}), plan);
+  counters_.queries += plan.asked.size();
+  for (const Asked& asked : plan.asked) counters_.believed_hidden += asked.believed_hidden ? 1 : 0;
+  if (!exact_ && kind == color) {
+    for (const std::uint32_t chunk : plan.second) counters_.drawn -= tree().chunk(chunk).slots.size();
+  }
+
+  occlusion.reserve(context, plan.asked.size(), tree().chunk_numbers());
+  prepare(pass, plan.first, occlusion.predicates());
+  if (exact_) prepare(pass, plan.second, occlusion.predicates());
+  occlusion.begin_frame(context, plan.asked, plan.governed);
+  const bool two_parts = exact_ && !plan.second.empty();
+  if (two_parts) pass.in_two_parts();
+  draw(pass, plan.first, &occlusion);
+  if (!two_parts) return;
+  pass.end_first_part();
+  occlusion.set_predicates(context);
+  draw_under(pass, plan.second, occlusion);
+}
+
+model::FrameFacts QueryOctree::facts() const {
+  model::FrameFacts facts = CachedOctree::facts();
+  if (!facts.exact_octree) return facts;  // it gave up
+  const QueryPlan& plan = plans_[plans_[color].first.empty() && plans_[color].second.empty() ? ids : color];
+  const ScreenArea screen(view(), context_.size);
+  facts.asked = static_cast<double>(plan.asked.size());
+  for (const Asked& asked : plan.asked) facts.asked_fragments += screen.fragments(asked.box_m);
+  facts.chunks_hidden = static_cast<double>(plan.second.size());
+  facts.hidden = load_of_chunks(scene_, tree(), plan.second, screen);
+  facts.exact_queries = true;
+  return facts;
+}
+
+}  // namespace scenegen::render

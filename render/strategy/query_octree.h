@@ -1,0 +1,58 @@
+// What strategies that ask whether parts of the octree are hidden have in common.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "render/passes/occlusion.h"
+#include "render/spatial/query_box.h"
+#include "render/strategy/cached_octree.h"
+
+namespace scenegen::render {
+
+/// What to draw and to ask in a pass.
+struct QueryPlan {
+  std::vector<std::uint32_t> first;   ///< chunks to draw whatever the answers are
+  std::vector<std::uint32_t> second;  ///< chunks believed hidden, each governed by one of `asked`
+  std::vector<Asked> asked;
+  std::vector<Governed> governed;  ///< as `second`, with the query
+  void clear() {
+    first.clear();
+    second.clear();
+    asked.clear();
+    governed.clear();
+  }
+};
+
+/// Exact, unlike the dissertation: what is believed hidden is drawn in a second part of the pass, under
+/// predicates that this frame's own queries set, so nothing is ever missing and nobody waits for a result.
+/// With late visibility it is not drawn at all. Derived classes say what to ask.
+class QueryOctree : public CachedOctree {
+ public:
+  explicit QueryOctree(const StrategyContext& context);
+  [[nodiscard]] model::FrameFacts facts() const override;
+
+ protected:
+  /// Passes have a depth each, so each asks for itself.
+  enum Kind : std::size_t { color, ids };
+  static constexpr std::size_t kKinds = 2;
+
+  /// Answers to what was asked some frames ago.
+  virtual void learn(Kind kind, const Occlusion::Answers& answers) = 0;
+  /// Divides chunks_. The plan is empty.
+  virtual void choose(Kind kind, const QueryBoxes& boxes, QueryPlan& plan) = 0;
+
+  /// Nothing that is hidden is drawn too late.
+  [[nodiscard]] bool exact() const { return exact_; }
+
+ private:
+  void draw_chunks(PassRecording& pass) final;
+  [[nodiscard]] Predicates predicates() const;
+
+  bool exact_ = true;
+  std::array<std::unique_ptr<Occlusion>, kKinds> occlusion_;
+  std::array<QueryPlan, kKinds> plans_;  // of the last frame
+};
+
+}  // namespace scenegen::render
