@@ -11,13 +11,15 @@ function findChromium() {
   throw new Error('no chromium in PATH: tools/setup.sh test installs it');
 }
 
-/// Promise<{page(size), close()}>. A request to anywhere but this machine is a failure, and so is a page error.
+/// Promise<{faults, page(size), close()}>. A request to anywhere but this machine is a failure, and so is a page error. close() ends the
+/// browser's processes at once, also under a page that is busy and would not answer.
 export async function openBrowser() {
-  const browser = await chromium.launch({
+  const server = await chromium.launchServer({
     executablePath: findChromium(),
     args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
       '--disable-background-networking', '--disable-component-update', '--disable-sync', '--force-color-profile=srgb'],
   });
+  const browser = await chromium.connect(server.wsEndpoint());
   const faults = [];
   return {
     faults,
@@ -32,6 +34,6 @@ export async function openBrowser() {
       page.on('pageerror', (error) => faults.push(`page: ${error.message}`));
       return page;
     },
-    close: () => browser.close(),
+    close: () => server.kill(),
   };
 }

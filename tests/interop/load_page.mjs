@@ -1,4 +1,4 @@
-// The page in which load_bench.mjs times how long three.js, as its users have it, takes to load a file and to show it.
+// The page in which optimize_load.mjs times how long three.js, as its users have it, takes to load a file and to show it.
 import * as THREE from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 
