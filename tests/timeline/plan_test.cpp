@@ -154,6 +154,8 @@ TEST_CASE("a CSV plan is read whatever its columns are called and separated by")
   CHECK(dates(good(
             "sep=\t\nname\tSTART\tduration\tpredecessor\na\t2024-03-01\t5\t\n\nb\t\t36 h\t1 FS + 2 d\n")) ==
         wanted);
+  CHECK(dates(good("sep=;\rid;name;start;duration;predecessors\r1;a;2024-03-01;5;\r\r2;b;;36h;1FS+2d\r")) ==
+        wanted);
   const Plan plan = good(
       "ID,Name,Start,Finish,Type,Objects,Selector,Offset,Cost\n"
       "A,\"walls,\n\"\"all\"\" of them\",2024-03-01,2024-03-01,install,\"w 1; "
@@ -253,6 +255,12 @@ TEST_CASE("CSV plans that are wrong say where and what") {
       {"id,start,finish\n1,2024-03-05,2024-03-01\n",
        "plan.csv: line 2: task '1' finishes (2024-03-02) before it starts (2024-03-05)"},
       {"id,start,duration\n1,9999-12-31,9\n", "plan.csv: line 2: task '1' is not within the years 1 to 9999"},
+      {"id,start\r1,2024-01-01\r\r2\r", "plan.csv: line 4: 1 cell; the first line has 2"},
+      {"sep=,\r\nid,start\r\n1,2024-01-01\r\n\r\n2\r\n", "plan.csv: line 5: 1 cell; the first line has 2"},
+      {"id,name,start\r1,\"two\rlines\",2024-01-01\r2,W\xE4nde,2024-01-01\r",
+       "plan.csv: line 4, character 4: byte 0xE4 is no UTF-8; save the plan in UTF-8 (Latin-1 and Windows "
+       "code pages are not read)"},
+      {std::string("id,start\r1,\0", 12), "plan.csv: line 2: a zero byte; is this a text file?"},
       {"id,start\n1,\"2024\n", "plan.csv: line 2: a quote of this record is not closed"},
       {"id,start\n1,20\"24\n",
        "plan.csv: line 2: a quote in a field that does not begin with one, or text behind a closing quote; a "

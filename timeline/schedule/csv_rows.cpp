@@ -13,6 +13,18 @@ namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
+/// Whether a line ends at a byte: files end them with \n, \r\n or (old spreadsheets of Macs) \r alone.
+bool ends_line(std::string_view bytes, std::size_t at) {
+  return bytes[at] == '\n' || (bytes[at] == '\r' && (at + 1 == bytes.size() || bytes[at + 1] != '\n'));
+}
+
+/// 1 for a byte of the first line.
+std::uint64_t line_of(std::string_view bytes, std::size_t offset) {
+  std::uint64_t line = 1;
+  for (std::size_t i = 0; i < offset; ++i) line += ends_line(bytes, i) ? 1 : 0;
+  return line;
+}
+
 /// Offset of the first byte that is no UTF-8: of the first line that is none, then byte by byte.
 std::size_t first_bad_byte(std::string_view bytes) {
   std::size_t begin = 0;
@@ -39,16 +51,15 @@ tl::unexpected<Error> not_utf8(std::string_view bytes, const std::string& name) 
     return fail(ErrorKind::bad_input, at_line(name, 1), "is UTF-16; save the plan as CSV in UTF-8");
   }
   const std::size_t bad = first_bad_byte(bytes);
-  const auto line = static_cast<std::uint64_t>(
-      std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(bad), '\n'));
-  const std::size_t newline = bad == 0 ? std::string_view::npos : bytes.rfind('\n', bad - 1);
+  const std::size_t newline = bad == 0 ? std::string_view::npos : bytes.find_last_of("\r\n", bad - 1);
   const std::size_t begin = newline == std::string_view::npos ? 0 : newline + 1;
   const auto column = std::count_if(bytes.begin() + static_cast<std::ptrdiff_t>(begin),
                                     bytes.begin() + static_cast<std::ptrdiff_t>(bad),
                                     [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
   std::array<char, 8> hex{};
   (void)std::snprintf(hex.data(), hex.size(), "0x%02X", static_cast<unsigned char>(bytes[bad]));
-  return fail(ErrorKind::bad_input, at_line(name, line + 1) + ", character " + std::to_string(column + 1),
+  return fail(ErrorKind::bad_input,
+              at_line(name, line_of(bytes, bad)) + ", character " + std::to_string(column + 1),
               std::string("byte ") + hex.data() +
                   " is no UTF-8; save the plan in UTF-8 (Latin-1 and Windows code pages are not read)");
 }
@@ -84,7 +95,8 @@ class Parser {
   /// A byte at a time: libcsv does not say where in its input a record begins.
   Result<void> run(std::string_view bytes, std::uint64_t first_line) {
     line_ = first_line;
-    for (const char& c : bytes) {
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      const char& c = bytes[i];
       const bool line_end = c == '\n' || c == '\r';
       if (fresh_ && !line_end) {
         row_.line = line_;
@@ -92,7 +104,7 @@ class Parser {
       }
       if (csv_parse(&parser_, &c, 1, on_field, on_row, this) != 1) return broken();
       if (!done_) return std::move(done_);
-      if (c == '\n') ++line_;
+      if (ends_line(bytes, i)) ++line_;
     }
     if (csv_fini(&parser_, on_field, on_row, this) != 0) {
       if (csv_error(&parser_) != CSV_EPARSE) return broken();
@@ -138,18 +150,18 @@ Result<void> read_csv(std::string_view bytes, const std::string& name,
                       const std::function<Result<void>(CsvRow&)>& take) {
   if (!simdjson::validate_utf8(bytes.data(), bytes.size())) return not_utf8(bytes, name);
   if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
-  if (const std::size_t zero = bytes.find('\0'); zero != std::string_view::npos) {
-    const auto before = std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(zero), '\n');
-    return fail(ErrorKind::bad_input, at_line(name, static_cast<std::uint64_t>(before) + 1),
+  if (const std::size_t zero = bytes.find('\0'); zero != std::string_view::npos)
+    return fail(ErrorKind::bad_input, at_line(name, line_of(bytes, zero)),
                 "a zero byte; is this a text file?");
-  }
   std::uint64_t first_line = 1;
   char delimiter = find_delimiter(bytes);
   if (bytes.starts_with("sep=") && bytes.size() > 4) {  // a spreadsheet's way of saying it
     delimiter = bytes[4];
     if (delimiter != ',' && delimiter != ';' && delimiter != '\t')
       return fail(ErrorKind::bad_input, at_line(name, 1), "'sep=' takes a comma, a semicolon or a tab");
-    bytes.remove_prefix(std::min(bytes.find('\n'), bytes.size() - 1) + 1);
+    std::size_t end = 4;
+    while (end < bytes.size() && !ends_line(bytes, end)) ++end;
+    bytes.remove_prefix(std::min(end + 1, bytes.size()));
     first_line = 2;
   }
   return Parser(delimiter, name, take).run(bytes, first_line);
