@@ -103,7 +103,11 @@ Container split_container(Bytes file) {
   };
   if (file.size() < 4 || std::memcmp(file.data(), "glTF", 4) != 0) {
     if (file.size() >= 3 && std::memcmp(file.data(), "\xEF\xBB\xBF", 3) == 0) file = file.subspan(3);
-    return {text(file), {}, false};
+    const std::string_view json = text(file);
+    const std::size_t first = json.find_first_not_of(" \t\r\n");
+    if (first == std::string_view::npos) reject(root, "empty");
+    if (json[first] != '{') reject(root, "is no glTF: it begins neither as a .glb nor as a JSON object");
+    return {json, {}, false};
   }
   if (file.size() < 20)
     reject(root, "truncated: a .glb has at least 20 bytes, this one " + std::to_string(file.size()));
