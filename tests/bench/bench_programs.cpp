@@ -1,6 +1,7 @@
 // Runs the built programs as a user would and prints CPU seconds, peak memory and file size beside the
 // figures aimed at.
-//   bench_programs BIN_DIR WORK_DIR [--ten-million]
+//   bench_programs BIN_DIR WORK_DIR [--ten-million | /usr/bin/node]: ten million objects too, or the peer of
+//   animate
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/resource.h>
@@ -86,7 +87,8 @@ bool measure(const Case& c, const std::string& program, const std::string& file)
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 3) return std::fprintf(stderr, "usage: bench_programs BIN_DIR WORK_DIR [--ten-million]\n"), 2;
+  if (argc < 3)
+    return std::fprintf(stderr, "usage: bench_programs BIN_DIR WORK_DIR [--ten-million | NODE]\n"), 2;
   const std::string scenegen = std::string(argv[1]) + "/scenegen";
   const std::string file = std::string(argv[2]) + "/bench_programs.glb";
   const bool ten_million = argc > 3 && std::strcmp(argv[3], "--ten-million") == 0;
