@@ -184,6 +184,38 @@ std::string_view ObjectFacts::guid(ObjectId object) const {
   return {};
 }
 
+std::vector<ObjectId> ObjectFacts::in_order() const {
+  return {state_->objects_by_place.begin(), state_->objects_by_place.end()};
+}
+
+std::vector<std::uint32_t> ObjectFacts::path(ObjectId object) const {
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t node = state_->node_of_object[object.value]; node != SourceNodes::kNone;
+       node = state_->nodes.parent[node])
+    out.push_back(node);
+  std::reverse(out.begin(), out.end());
+  return out;
+}
+
+std::string_view ObjectFacts::node_name(std::uint32_t node) const {
+  return state_->nodes.names[node];
+}
+
+std::vector<ObjectFacts::Extra> ObjectFacts::node_extras(std::uint32_t node) const {
+  const State& s = *state_;
+  std::vector<Extra> out;
+  for (std::uint32_t e = s.first_extra[node]; e < s.first_extra[node + 1]; ++e) {
+    const SourceNodes::ExtraPath* path = &s.nodes.paths[s.nodes.extras[e].path];
+    std::string key = path->key;
+    while (path->parent != SourceNodes::kNone) {
+      path = &s.nodes.paths[path->parent];
+      key.insert(0, path->key + ".");
+    }
+    out.push_back({std::move(key), s.extra_text(e)});
+  }
+  return out;
+}
+
 // ---- Selector
 
 namespace {

@@ -24,6 +24,18 @@ class ObjectFacts {
   void index();
   /// The identifier (Selector::with_guid) of the object's node or of the nearest above that has one, or "".
   [[nodiscard]] std::string_view guid(ObjectId object) const;
+
+  // To list what selectors can find.
+  /// Objects depth first: those below one node follow each other.
+  [[nodiscard]] std::vector<ObjectId> in_order() const;
+  /// /nodes/i from the root down to the object's own, which instances share.
+  [[nodiscard]] std::vector<std::uint32_t> path(ObjectId object) const;
+  [[nodiscard]] std::string_view node_name(std::uint32_t node) const;  ///< "": it has none
+  struct Extra {
+    std::string key;  ///< as behind "extras."
+    std::string_view value;
+  };
+  [[nodiscard]] std::vector<Extra> node_extras(std::uint32_t node) const;
   ~ObjectFacts();
   ObjectFacts(ObjectFacts&&) noexcept;
   ObjectFacts& operator=(ObjectFacts&&) noexcept;

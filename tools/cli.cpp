@@ -426,6 +426,10 @@ std::string Options::help(bool colored) const {
   return out;
 }
 
+std::string Options::version() const {
+  return state_->program.substr(0, state_->program.find(' ')) + " " SCENEGEN_VERSION "\n";
+}
+
 std::string printable(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; },

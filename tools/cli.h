@@ -136,6 +136,8 @@ class Options {
   [[nodiscard]] std::vector<std::string> canonical_arguments() const;
   /// An object that --config reads back; `left_out` names long options that do not apply.
   [[nodiscard]] nlohmann::ordered_json config(std::span<const Conflict> left_out = {}) const;
+  /// "scenegen 0.1.0" and a newline.
+  [[nodiscard]] std::string version() const;
   /// At most 100 characters a line.
   [[nodiscard]] std::string help(bool colored) const;
 

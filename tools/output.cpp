@@ -11,8 +11,6 @@
 #include <cstring>
 #include <filesystem>
 
-#include "scene/gltf/write_files.h"
-
 namespace scenegen::tools {
 
 using nlohmann::ordered_json;
@@ -219,14 +217,19 @@ Result<void> write_stdout(std::string_view text) {
   return {};
 }
 
-Result<void> write_file(const std::string& path, std::string_view bytes) {
-  if (path == "-") return write_stdout(bytes);
+Result<gltf::OutputFile> prepare_file(const std::string& path, std::string_view bytes) {
+  if (path == "-") (void)std::fflush(stdout);
   auto file = gltf::OutputFile::open(path);
   if (!file) return forward_error(file);
   if (const int error_number = write_all(file->descriptor(), bytes); error_number != 0)
-    return cannot_write(path, error_number);
-  if (auto closed = file->close(); !closed) return closed;
-  return file->commit();
+    return cannot_write(path == "-" ? "standard output" : path, error_number);
+  if (auto closed = file->close(); !closed) return forward_error(closed);
+  return file;
+}
+
+Result<void> write_file(const std::string& path, std::string_view bytes) {
+  auto file = prepare_file(path, bytes);
+  return file ? file->commit() : forward_error(file);
 }
 
 Result<void> check_output_file(const std::string& path) {

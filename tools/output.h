@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/gltf/write_files.h"
 #include "scene/result.h"
 #include "tools/cli.h"
 
@@ -71,6 +72,9 @@ class Table {
 
 /// All of `text` on stdout, or an error (a closed pipe, a full disk).
 [[nodiscard]] Result<void> write_stdout(std::string_view text);
+/// A file that is complete beside its place: commit() puts it there, else it goes away. What is no file
+/// (stdout, a device) is written at once.
+[[nodiscard]] Result<gltf::OutputFile> prepare_file(const std::string& path, std::string_view bytes);
 /// Writes beside `path` and renames when complete; what was there before stays when it fails. `path` may be
 /// "-" (stdout) or a device or pipe, which is written directly.
 [[nodiscard]] Result<void> write_file(const std::string& path, std::string_view bytes);

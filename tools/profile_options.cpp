@@ -121,11 +121,12 @@ void add_profile_options(Options& options, ProfileRequest& r, ProfileSource sour
   constexpr double kLongest = 1e6;  // s
   options.group("Profile");
   if (source == ProfileSource::curve) {
-    options.add("--profile", choice_value<Profile>(r.profile, profile_choices(), "NAME"),
-                "what happens to an object at its time: it just appears; construct: highlighted while it is "
-                "built; demolish: it was there and goes away; temporary: there for a while; drop: comes down "
-                "into its place; move: goes by --move-offset; operate: highlighted for a while",
-                Role::content);
+    options.add(
+        "--profile", choice_value<Profile>(r.profile, profile_choices(), "NAME"),
+        "what happens to an object at its time: it just appears; construct: highlighted while it is "
+        "built; demolish: it was there and goes away; temporary: there for a while; drop: comes down "
+        "into its place; move: goes by --move-offset; operate: highlighted for a while; neutral: as appear",
+        Role::content);
     options.add("--profile-duration", real_or_default(r.duration_s, 1e-6, kLongest, "S"),
                 "seconds that it takes", Role::content, "a twentieth of the time that the curve takes");
   }

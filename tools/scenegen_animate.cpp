@@ -5,8 +5,6 @@
 #include <thread>
 
 #include "scene/gltf/patch.h"
-#include "scene/gltf/restructure.h"
-#include "scene/import/import.h"
 #include "scene/limits.h"
 #include "scene/selector.h"
 #include "timeline/appearance.h"
@@ -17,6 +15,8 @@
 #include "tools/profile_options.h"
 #include "tools/scenegen.h"
 #include "tools/scenegen_options.h"
+#include "tools/source_model.h"
+#include "tools/verb.h"
 
 namespace scenegen::tools {
 
@@ -83,18 +83,6 @@ Result<void> check_selector(const std::string& text) {
   return selector ? Result<void>() : forward_error(selector);
 }
 
-Value up_value(import::UpAxis& target) {
-  using import::UpAxis;
-  return choice_value<UpAxis>(
-      target, {{"auto", UpAxis::automatic}, {"x", UpAxis::x}, {"y", UpAxis::y}, {"z", UpAxis::z}}, "AXIS");
-}
-
-Value unit_value(double& target) {
-  Value value = real_value(target, 1e-9, 1e9, "M");
-  value.spell = [&target] { return target == 0 ? std::string() : shortest(target); };
-  return value;
-}
-
 Value split_value(gltf::Split& target) {
   return choice_value<gltf::Split>(target,
                                    {{"none", gltf::Split::none},
@@ -113,11 +101,7 @@ void add_model_options(Options& options, AnimateRequest& r) {
               Role::content);
   options.add("--exclude", texts_value(r.exclude, "SELECTOR", kSelectorForms, check_selector),
               "objects that get no time and stay visible; may be given several times", Role::content, "none");
-  options.add("--up", up_value(r.import.up),
-              "the model's axis that points up; auto: what the file says, else what its format means",
-              Role::content);
-  options.add("--unit", unit_value(r.import.metres_per_unit), "metres in a unit of the model", Role::content,
-              "what the file says, else 1");
+  add_import_options(options, r.import);
 }
 
 Options animate_options(AnimateRequest& r) {
@@ -174,20 +158,8 @@ std::vector<Conflict> conflicts(const AnimateRequest& r) {
   std::vector<Profile> used{r.profile.profile};
   for (const Rule& rule : rules_of(r)) used.push_back(rule.profile);
   std::vector<Conflict> out = profile_conflicts(r.profile, used);
-  if (import::is_gltf(r.input)) {
-    for (const char* name : {"--up", "--unit"})
-      out.push_back({name, "cannot be used with glTF, which is in metres and Y up"});
-  }
-  if (r.output == "-" && !r.dry_run) {
-    out.push_back(
-        {"--format",
-         "cannot be used with --output -, which puts the .glb on stdout (--report FILE writes JSON)"});
-  }
-  if (r.report == "-") {
-    out.push_back({"--format", "cannot be used with --report -, which puts the report on stdout"});
-    if (r.output == "-" && !r.dry_run)
-      out.push_back({"--report", "cannot be used with --output -: stdout takes one of them"});
-  }
+  add_import_conflicts(r.input, out);
+  add_stdout_conflicts(r.dry_run ? "" : r.output, r.report, out);
   return out;
 }
 
@@ -202,35 +174,10 @@ Result<void> check(const AnimateRequest& r, const Options& options) {
     }
     if (auto writable = check_scene_output(r.output); !writable) return writable;
   }
-  // The model itself may be replaced: it is read before that.
-  if (auto apart =
-          check_distinct_files({{"--output", r.dry_run ? "" : r.output}, {"--report", r.report}}, {});
-      !apart)
-    return apart;
-  if (auto apart = check_distinct_files({{"--report", r.report}}, {{"MODEL", r.input}}); !apart) return apart;
-  return r.report.empty() || r.report == "-" ? Result<void>() : check_output_file(r.report);
+  return check_output_and_report(r.dry_run ? "" : r.output, r.report, {"MODEL", r.input});
 }
 
 // ---- The way of the data
-
-/// The model with every object in a node of its own.
-Result<gltf::ReadResult> read_objects(const AnimateRequest& r, Animated& out) {
-  auto read = import::read_model(r.input, r.import);
-  if (!read) return read;
-  for (const gltf::Ignored& left_out : read->ignored) {
-    if (left_out.where == r.input)  // by the import; what a glTF holds beyond a scene stays in its document
-      out.notes.push_back("not imported: " + human_count(left_out.count) + " x " + left_out.what);
-  }
-  if (read->scene.objects.size() == 0)
-    return fail(ErrorKind::bad_input, r.input, "has no objects: no node that is drawn has a mesh");
-  if (!gltf::needs_restructuring(*read, r.split)) return read;
-  auto again = gltf::restructure(std::move(*read), r.split);
-  if (!again) return forward_error(again);
-  out.split_objects = again->split_objects;
-  out.expanded = again->expanded;
-  out.notes.insert(out.notes.end(), again->notes.begin(), again->notes.end());
-  return std::move(again->read);
-}
 
 /// Objects that a selector chooses; one that chooses none is most likely misspelt.
 Result<std::vector<ObjectId>> chosen(const std::string& selector, const char* option,
@@ -306,12 +253,16 @@ Result<Animated> animate(const AnimateRequest& r, const std::vector<std::string>
   Animated out;
   Progress progress("", 0, r.quiet);
   progress.stage("reading " + r.input);
-  auto read = read_objects(r, out);
-  if (!read) return forward_error(read);
-  Scene& scene = read->scene;
-  progress.stage("giving times to " + human_count(scene.objects.size()) + " objects");
+  auto model = read_source_model(r.input, r.import, r.split);
+  if (!model) return forward_error(model);
+  out.split_objects = model->split_objects;
+  out.expanded = model->expanded;
+  out.notes = std::move(model->notes);
+  const gltf::ReadResult& read = model->read;
+  Scene& scene = model->read.scene;
+  progress.stage("giving times to " + counted(scene.objects.size(), "object"));
   const timeline::TracksAsRead as_read(scene);
-  auto profiled = give_times(r, *read, scene, out);
+  auto profiled = give_times(r, read, scene, out);
   if (!profiled) return forward_error(profiled);
   scene.info.seed = r.seed;
   scene.info.arguments = arguments;
@@ -325,7 +276,7 @@ Result<Animated> animate(const AnimateRequest& r, const std::vector<std::string>
     gltf::PatchOptions options;
     options.visibility = r.visibility;
     options.material_copy_of = profiled->copy_of;
-    auto file = gltf::patch(*read->source, scene, r.output, options);
+    auto file = gltf::patch(*read.source, scene, r.output, options);
     if (!file) return forward_error(file);
     out.file = std::move(*file);
     out.notes.insert(out.notes.end(), out.file.notes.begin(), out.file.notes.end());
@@ -341,13 +292,13 @@ std::string finished_line(const AnimateRequest& r, const Animated& made) {
   std::string line =
       r.dry_run ? "(not written)  "
                 : (r.output == "-" ? "stdout" : r.output) + "  " + human_bytes(made.file.bytes) + "  ";
-  line += human_count(made.counts.objects) + " objects";
+  line += counted(made.counts.objects, "object");
   if (r.dry_run) {
-    line += "  " + human_count(made.counts.vertices) + " vertices  " + human_count(made.counts.triangles) +
-            " triangles";
+    line += "  " + counted(made.counts.vertices, "vertex", "vertices") + "  " +
+            counted(made.counts.triangles, "triangle");
   }
   if (made.excluded != 0) line += "  " + human_count(made.excluded) + " excluded";
-  return line + "  " + human_count(made.appearance.moments) + " moments  coherence " +
+  return line + "  " + counted(made.appearance.moments, "moment") + "  coherence " +
          human_real(made.appearance.coherence_measured, 3) + "  locality " +
          human_real(made.appearance.locality_cells, 1) + "  seed " + std::to_string(r.seed) + "  " +
          human_seconds(made.seconds) + "\n";
@@ -393,28 +344,25 @@ Report report(const AnimateRequest& r, const Animated& made, const std::vector<s
   return out;
 }
 
-Result<void> say(const AnimateRequest& r, const Animated& made, const std::vector<std::string>& arguments) {
-  const Report facts = report(r, made, arguments);
-  if (!r.quiet) {
-    for (const std::string& note : made.notes)
-      (void)std::fprintf(stderr, "note: %s\n", printable(note).c_str());
-  }
-  if (!r.report.empty()) {
-    if (auto written = write_file(r.report, pretty(facts.json())); !written) return written;
-  }
-  if (r.format != Format::table) return write_stdout(facts.str(r.format));
-  if (r.quiet) return {};
-  const std::string line = finished_line(r, made);
-  const bool stdout_taken = r.report == "-" || (r.output == "-" && !r.dry_run);
-  if (!stdout_taken) return write_stdout(line);
-  (void)std::fputs(line.c_str(), stderr);
-  return {};
-}
-
-void settle_animate(AnimateRequest& r) {
+void settle(AnimateRequest& r) {
   const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
   r.appearance.seed = r.seed;
   r.appearance.threads = r.threads != 0 ? r.threads : std::min(processors, limits::kMaxThreads);
+}
+
+Result<int> work(AnimateRequest& r, const std::vector<std::string>& arguments) {
+  settle(r);
+  auto made = animate(r, arguments);
+  if (!made) return forward_error(made);
+  const Report facts = report(r, *made, arguments);
+  auto said = say({.facts = facts,
+                   .notes = made->notes,
+                   .text = finished_line(r, *made),
+                   .report = r.report,
+                   .format = r.format,
+                   .quiet = r.quiet,
+                   .stdout_taken = r.report == "-" || (r.output == "-" && !r.dry_run)});
+  return said ? Result<int>(0) : forward_error(said);
 }
 
 }  // namespace
@@ -422,23 +370,11 @@ void settle_animate(AnimateRequest& r) {
 int animate_verb(std::span<const std::string> arguments) {
   AnimateRequest request;
   Options options = animate_options(request);
-  const Result<Action> action = options.parse(arguments);
-  if (!action) return report_error(action.error());
-  Result<void> done;
-  if (*action == Action::help) {
-    done = write_stdout(options.help(colored(1)));
-  } else if (*action == Action::version) {
-    done = write_stdout("scenegen " SCENEGEN_VERSION "\n");
-  } else if (done = check(request, options); done && request.dump_config) {
-    done = write_stdout(pretty(options.config(conflicts(request))));
-  } else if (done) {
-    settle_animate(request);
-    const std::vector<std::string> canonical = options.canonical_arguments();
-    const auto made = animate(request, canonical);
-    if (!made) return report_error(made.error());
-    done = say(request, *made, canonical);
-  }
-  return done ? 0 : report_error(done.error());
+  return run_verb(options, arguments,
+                  {.check = [&] { return check(request, options); },
+                   .dump_config = &request.dump_config,
+                   .conflicts = [&] { return conflicts(request); },
+                   .work = [&] { return work(request, options.canonical_arguments()); }});
 }
 
 }  // namespace scenegen::tools

@@ -3,6 +3,7 @@
 #include "timeline/compare.h"
 #include "tools/output.h"
 #include "tools/scenegen.h"
+#include "tools/verb.h"
 
 namespace scenegen::tools {
 
@@ -29,8 +30,7 @@ std::string listed(const timeline::Comparison& comparison) {
   }
   const std::uint64_t rest = comparison.difference_count - comparison.differences.size();
   if (rest > 0) out += "... and " + human_count(rest) + " more\n";
-  return out + "different: " + human_count(comparison.difference_count) +
-         (comparison.difference_count == 1 ? " difference\n" : " differences\n");
+  return out + "different: " + counted(comparison.difference_count, "difference") + "\n";
 }
 
 Report report(const DiffRequest& r, const timeline::Comparison& comparison, std::uint64_t objects) {
@@ -49,7 +49,8 @@ Report report(const DiffRequest& r, const timeline::Comparison& comparison, std:
   return out;
 }
 
-Result<bool> diff(const DiffRequest& r) {
+/// The exit code: 1 when they differ.
+Result<int> diff(const DiffRequest& r) {
   auto a = gltf::read(r.a);
   if (!a) return forward_error(a);
   auto b = gltf::read(r.b);
@@ -61,20 +62,21 @@ Result<bool> diff(const DiffRequest& r) {
   options.normal_tolerance = static_cast<float>(r.normal_tolerance);
   options.most = r.most;
   const timeline::Comparison comparison = timeline::compare(a->scene, b->scene, options);
+  const int code = comparison.equal() ? 0 : static_cast<int>(ErrorKind::bad_input);
   const std::uint64_t objects = a->scene.objects.size();
   std::string text;
   if (r.format != Format::table) {
     text = report(r, comparison, objects).str(r.format);
   } else if (r.quiet) {
-    return comparison.equal();
+    return code;
   } else if (comparison.equal()) {
-    text = "equal  " + human_count(objects) + " objects  " + human_count(comparison.times_compared) +
-           " times compared\n";
+    text = "equal  " + counted(objects, "object") + "  " + counted(comparison.times_compared, "time") +
+           " compared\n";
   } else {
     text = listed(comparison);
   }
   if (auto written = write_stdout(text); !written) return forward_error(written);
-  return comparison.equal();
+  return code;
 }
 
 }  // namespace
@@ -100,16 +102,7 @@ int diff_verb(std::span<const std::string> arguments) {
   options.add("--format", format_value(request.format), "form of what is printed on stdout");
   options.group("General");
   options.add_general(request.quiet);
-  const Result<Action> action = options.parse(arguments);
-  if (!action) return report_error(action.error());
-  if (*action != Action::run) {
-    const auto written =
-        write_stdout(*action == Action::help ? options.help(colored(1)) : "scenegen " SCENEGEN_VERSION "\n");
-    return written ? 0 : report_error(written.error());
-  }
-  const Result<bool> equal = diff(request);
-  if (!equal) return report_error(equal.error());
-  return *equal ? 0 : static_cast<int>(ErrorKind::bad_input);
+  return run_verb(options, arguments, {.work = [&] { return diff(request); }});
 }
 
 }  // namespace scenegen::tools

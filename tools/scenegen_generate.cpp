@@ -10,6 +10,7 @@
 #include "tools/output.h"
 #include "tools/scenegen.h"
 #include "tools/scenegen_options.h"
+#include "tools/verb.h"
 
 namespace scenegen::tools {
 
@@ -66,7 +67,7 @@ Result<Made> make(const GenerateRequest& r, const std::vector<std::string>& argu
 
   constexpr std::uint64_t kLongWork = 300'000;  // objects; about a third of a second
   Progress progress("", 0, r.quiet || predicted->objects < kLongWork);
-  progress.stage("laying " + human_count(predicted->objects) + " objects");
+  progress.stage("laying " + counted(predicted->objects, "object"));
   auto generated = generate(r);
   if (!generated) return forward_error(generated);
   Scene& scene = generated->scene;
@@ -115,21 +116,21 @@ std::uint64_t moments(const Made& made) {
 /// "scene.glb  5.1 MB  38 016 objects  4 096 moments  coherence 0.951  locality 13.3  seed 1  0.21 s"
 std::string finished_line(const GenerateRequest& r, const Made& made) {
   std::string line = (r.output == "-" ? "stdout" : r.output) + (r.dry_run ? "  (not written)  " : "  ") +
-                     human_bytes(made.file.bytes) + "  " + human_count(made.counts.objects) + " objects";
+                     human_bytes(made.file.bytes) + "  " + counted(made.counts.objects, "object");
   if (r.dry_run) {
-    line += "  " + human_count(made.counts.vertices) + " vertices  " + human_count(made.counts.triangles) +
-            " triangles";
+    line += "  " + counted(made.counts.vertices, "vertex", "vertices") + "  " +
+            counted(made.counts.triangles, "triangle");
   }
-  line += "  " + human_count(moments(made)) + " moments";
+  line += "  " + counted(moments(made), "moment");
   if (made.appearance) {
     line += "  coherence " + human_real(made.appearance->coherence_measured, 3) + "  locality " +
             human_real(made.appearance->locality_cells, 1);
   }
   line += "  seed " + std::to_string(r.seed) + "  " + human_seconds(made.seconds) + "\n";
   if (made.file.instance_groups > 0) {
-    line += layout_name(made.file.layout) + ": " + human_count(made.file.instance_groups) + " groups, " +
+    line += layout_name(made.file.layout) + ": " + counted(made.file.instance_groups, "group") + ", " +
             human_real(objects_per_group(made), 1) + " objects per group, " +
-            human_count(made.file.single_object_groups) + " objects alone\n";
+            counted(made.file.single_object_groups, "object") + " alone\n";
   }
   return line;
 }
@@ -180,22 +181,19 @@ Report report(const GenerateRequest& r, const Made& made, const std::vector<std:
   return out;
 }
 
-Result<void> say(const GenerateRequest& r, const Made& made, const std::vector<std::string>& arguments) {
-  const Report facts = report(r, made, arguments);
-  if (!r.quiet) {
-    for (const std::string& note : made.notes)
-      (void)std::fprintf(stderr, "note: %s\n", printable(note).c_str());
-  }
-  if (!r.report.empty()) {
-    if (auto written = write_file(r.report, pretty(facts.json())); !written) return written;
-  }
-  if (r.format != Format::table) return write_stdout(facts.str(r.format));
-  if (r.quiet) return {};
-  const std::string line = finished_line(r, made);
-  const bool stdout_taken = r.report == "-" || (r.output == "-" && !r.dry_run);
-  if (!stdout_taken) return write_stdout(line);
-  (void)std::fputs(line.c_str(), stderr);
-  return {};
+Result<int> work(GenerateRequest& r, const std::vector<std::string>& arguments) {
+  settle(r);
+  auto made = make(r, arguments);
+  if (!made) return forward_error(made);
+  const Report facts = report(r, *made, arguments);
+  auto said = say({.facts = facts,
+                   .notes = made->notes,
+                   .text = finished_line(r, *made),
+                   .report = r.report,
+                   .format = r.format,
+                   .quiet = r.quiet,
+                   .stdout_taken = r.report == "-" || (r.output == "-" && !r.dry_run)});
+  return said ? Result<int>(0) : forward_error(said);
 }
 
 }  // namespace
@@ -223,23 +221,11 @@ std::string generate_short_help() {
 int generate_verb(std::span<const std::string> arguments) {
   GenerateRequest request;
   Options options = generate_options(request);
-  const Result<Action> action = options.parse(arguments);
-  if (!action) return report_error(action.error());
-  Result<void> done;
-  if (*action == Action::help) {
-    done = write_stdout(options.help(colored(1)));
-  } else if (*action == Action::version) {
-    done = write_stdout("scenegen " SCENEGEN_VERSION "\n");
-  } else if (done = check(request, options); done && request.dump_config) {
-    done = write_stdout(pretty(options.config(conflicts(request))));
-  } else if (done) {
-    settle(request);
-    const std::vector<std::string> canonical = options.canonical_arguments();
-    const auto made = make(request, canonical);
-    if (!made) return report_error(made.error());
-    done = say(request, *made, canonical);
-  }
-  return done ? 0 : report_error(done.error());
+  return run_verb(options, arguments,
+                  {.check = [&] { return check(request, options); },
+                   .dump_config = &request.dump_config,
+                   .conflicts = [&] { return conflicts(request); },
+                   .work = [&] { return work(request, options.canonical_arguments()); }});
 }
 
 }  // namespace scenegen::tools

@@ -1,10 +1,15 @@
 // scenegen inspect FILE: what is in a file, ours or anybody's.
+#include <filesystem>
+
 #include "scene/gltf/read.h"
+#include "scene/import/import.h"
 #include "scene/limits.h"
 #include "scene/validate.h"
 #include "timeline/statistics.h"
+#include "tools/object_list.h"
 #include "tools/output.h"
 #include "tools/scenegen.h"
+#include "tools/verb.h"
 
 namespace scenegen::tools {
 
@@ -14,6 +19,7 @@ using nlohmann::ordered_json;
 
 struct InspectRequest {
   std::string file;
+  bool objects = false;
   Format format = Format::table;
   std::uint32_t threads = 1;
   bool quiet = false;
@@ -34,6 +40,14 @@ void add_file_section(Report& out, const std::string& path, const gltf::ReadResu
   const SceneInfo& info = read.scene.info;
   out.section("File");
   out.add({"file", "file", path, path});
+  if (!import::is_gltf(path)) {
+    std::error_code gone;  // since it was read
+    const std::uintmax_t bytes = std::filesystem::file_size(path, gone);
+    if (!gone) out.add({"bytes", "size", bytes, human_bytes(bytes)});
+    out.add({"gltfBytes", "as glTF", read.file_bytes, human_bytes(read.file_bytes)});
+    out.add({"importer", "read by", info.generator, info.generator});
+    return;
+  }
   out.add({"bytes", "size", read.file_bytes, human_bytes(read.file_bytes)});
   out.add({"parts/json", "  JSON", read.json_bytes, human_bytes(read.json_bytes)});
   out.add({"parts/binary", "  binary", binary_bytes, human_bytes(binary_bytes)});
@@ -139,24 +153,38 @@ void add_findings_section(Report& out, const std::vector<Finding>& findings) {
   }
 }
 
-Result<bool> inspect(const InspectRequest& r) {
-  gltf::ReadOptions read_options;
-  read_options.threads = r.threads;
-  auto read = gltf::read(r.file, read_options);
+Result<gltf::ReadResult> read_file(const InspectRequest& r) {
+  if (r.objects || !import::is_gltf(r.file)) return import::read_model(r.file);
+  gltf::ReadOptions options;
+  options.threads = r.threads;
+  return gltf::read(r.file, options);
+}
+
+/// The exit code: 1 when the scene breaks rules.
+Result<int> inspect(const InspectRequest& r) {
+  auto read = read_file(r);
   if (!read) return forward_error(read);
-  const timeline::Statistics statistics = timeline::statistics(read->scene, r.threads);
   const std::vector<Finding> findings = validate(read->scene);
-  Report out("scenegen/inspect", 1);
-  add_file_section(out, r.file, *read);
-  add_scene_section(out, statistics);
-  add_timeline_section(out, statistics);
-  add_appearance_section(out, read->scene.info, statistics);
-  add_ignored_section(out, read->ignored);
-  add_findings_section(out, findings);
-  if (!r.quiet || r.format != Format::table) {
-    if (auto written = write_stdout(out.str(r.format)); !written) return forward_error(written);
+  std::string text;
+  if (r.objects) {
+    auto list = object_list(r.file, *read, r.format);
+    if (!list) return forward_error(list);
+    text = std::move(*list);
+  } else {
+    const timeline::Statistics statistics = timeline::statistics(read->scene, r.threads);
+    Report out("scenegen/inspect", 1);
+    add_file_section(out, r.file, *read);
+    add_scene_section(out, statistics);
+    add_timeline_section(out, statistics);
+    add_appearance_section(out, read->scene.info, statistics);
+    add_ignored_section(out, read->ignored);
+    add_findings_section(out, findings);
+    text = out.str(r.format);
   }
-  return findings.empty();
+  if (!r.quiet || r.format != Format::table) {
+    if (auto written = write_stdout(text); !written) return forward_error(written);
+  }
+  return findings.empty() ? 0 : static_cast<int>(ErrorKind::bad_input);
 }
 
 }  // namespace
@@ -164,24 +192,19 @@ Result<bool> inspect(const InspectRequest& r) {
 int inspect_verb(std::span<const std::string> arguments) {
   InspectRequest request;
   Options options("scenegen inspect", {"scenegen inspect FILE [options]"},
-                  "says what is in a glTF file: objects, meshes, timeline, sizes, and what was ignored.");
-  options.positional("FILE", request.file, "a .glb or .gltf file");
+                  "says what is in a file: objects, meshes, timeline, sizes, and what was ignored. FILE is "
+                  "glTF, or a model that scenegen animate and scenegen schedule read.");
+  options.positional("FILE", request.file, "a .glb or .gltf file (- is stdin), or a model of another format");
   options.group("Output");
+  options.flag("--objects", request.objects,
+               "list instead what rules and plans can call its objects: the tree of nodes with their names, "
+               "[materials] and extras; with --format csv or json an object a row");
   options.add("--format", format_value(request.format), "form of what is printed on stdout");
   options.group("General");
   options.add("--threads", whole_value<std::uint32_t>(request.threads, 1, limits::kMaxThreads),
               "threads to use");
   options.add_general(request.quiet);
-  const Result<Action> action = options.parse(arguments);
-  if (!action) return report_error(action.error());
-  if (*action != Action::run) {
-    const auto written =
-        write_stdout(*action == Action::help ? options.help(colored(1)) : "scenegen " SCENEGEN_VERSION "\n");
-    return written ? 0 : report_error(written.error());
-  }
-  const Result<bool> clean = inspect(request);
-  if (!clean) return report_error(clean.error());
-  return *clean ? 0 : static_cast<int>(ErrorKind::bad_input);
+  return run_verb(options, arguments, {.work = [&] { return inspect(request); }});
 }
 
 }  // namespace scenegen::tools

@@ -7,6 +7,7 @@
 #include "tools/output.h"
 #include "tools/scenegen.h"
 #include "tools/scenegen_options.h"
+#include "tools/verb.h"
 
 namespace scenegen::tools {
 
@@ -36,15 +37,7 @@ struct Optimized {
 
 std::vector<Conflict> conflicts(const OptimizeRequest& r) {
   std::vector<Conflict> out = conflicts_of_draco(r.file.draco);
-  if (r.output == "-" && !r.dry_run)
-    out.push_back(
-        {"--format",
-         "cannot be used with --output -, which puts the .glb on stdout (--report FILE writes JSON)"});
-  if (r.report == "-") {
-    out.push_back({"--format", "cannot be used with --report -, which puts the report on stdout"});
-    if (r.output == "-" && !r.dry_run)
-      out.push_back({"--report", "cannot be used with --output -: stdout takes one of them"});
-  }
+  add_stdout_conflicts(r.dry_run ? "" : r.output, r.report, out);
   return out;
 }
 
@@ -55,13 +48,7 @@ Result<void> check(const OptimizeRequest& r, const Options& options) {
   if (!r.dry_run) {
     if (auto writable = check_scene_output(r.output); !writable) return writable;
   }
-  // The model itself may be replaced: it is read before that.
-  if (auto apart =
-          check_distinct_files({{"--output", r.dry_run ? "" : r.output}, {"--report", r.report}}, {});
-      !apart)
-    return apart;
-  if (auto apart = check_distinct_files({{"--report", r.report}}, {{"FILE", r.input}}); !apart) return apart;
-  return r.report.empty() || r.report == "-" ? Result<void>() : check_output_file(r.report);
+  return check_output_and_report(r.dry_run ? "" : r.output, r.report, {"FILE", r.input});
 }
 
 std::string listed(const std::vector<gltf::Ignored>& losses) {
@@ -72,7 +59,7 @@ std::string listed(const std::vector<gltf::Ignored>& losses) {
     out += (i == 0 ? "" : "; ") + loss.what + " (" + loss.where;
     out += loss.count > 1 ? " and " + human_count(loss.count - 1) + " more)" : ")";
   }
-  if (losses.size() > kMost) out += "; and " + human_count(losses.size() - kMost) + " kinds more";
+  if (losses.size() > kMost) out += "; and " + counted(losses.size() - kMost, "kind") + " more";
   return out;
 }
 
@@ -126,8 +113,7 @@ void add_change(Report& out, const std::string& key, const std::string& label, s
 std::string joined(std::uint64_t equal, std::uint64_t stretched = 0) {
   std::string out = equal == 0 ? "" : human_count(equal) + " equal to others";
   if (stretched > 0)
-    out += (out.empty() ? "" : ", ") + human_count(stretched) +
-           (stretched == 1 ? " stretched copy" : " stretched copies");
+    out += (out.empty() ? "" : ", ") + counted(stretched, "stretched copy", "stretched copies");
   return out;
 }
 
@@ -163,10 +149,9 @@ Report report(const OptimizeRequest& r, const Optimized& made) {
              joined(c.equal_materials));
   add_change(out, "textures", "textures", made.before.textures, c.after.textures, joined(c.equal_textures));
   add_change(out, "images", "images", made.before.images, c.after.images, joined(c.equal_images));
-  add_change(out, "frames", "frames", c.before.frames, c.after.frames,
-             c.unframed_objects == 0
-                 ? ""
-                 : human_count(c.unframed_objects) + " objects left frames that never move");
+  add_change(
+      out, "frames", "frames", c.before.frames, c.after.frames,
+      c.unframed_objects == 0 ? "" : counted(c.unframed_objects, "object") + " left frames that never move");
   add_change(
       out, "tracks", "timelines", c.before.tracks, c.after.tracks,
       c.constant_tracks == 0 ? joined(c.equal_tracks) : human_count(c.constant_tracks) + " changed nothing");
@@ -202,28 +187,29 @@ std::string finished_line(const OptimizeRequest& r, const Optimized& made) {
   const std::string name = r.output.empty() ? r.input : r.output == "-" ? "stdout" : r.output;
   return name + (r.dry_run ? "  (not written)  " : "  ") + human_bytes(made.file.bytes) + " (" +
          human_real(100 * share(made), 1) + " % of " + human_bytes(made.bytes_before) + ")  " +
-         human_count(made.objects) + " objects  " + human_count(made.moments) + " moments  layout " +
+         counted(made.objects, "object") + "  " + counted(made.moments, "moment") + "  layout " +
          layout_name(made.file.layout) + "  " + human_seconds(made.seconds) + "\n";
 }
 
-Result<void> say(const OptimizeRequest& r, const Optimized& made) {
-  const Report facts = report(r, made);
-  if (!r.quiet) {
-    if (!made.before.losses.empty())
-      (void)std::fprintf(stderr, "note: lost %s\n", printable(listed(made.before.losses)).c_str());
-    for (const std::string& note : made.file.notes)
-      (void)std::fprintf(stderr, "note: %s\n", printable(note).c_str());
-  }
-  if (!r.report.empty()) {
-    if (auto written = write_file(r.report, pretty(facts.json())); !written) return written;
-  }
-  if (r.format != Format::table) return write_stdout(facts.str(r.format));
-  if (r.quiet) return {};
-  const std::string text = facts.str(Format::table) + "\n" + finished_line(r, made);
-  const bool stdout_taken = r.report == "-" || (r.output == "-" && !r.dry_run);
-  if (!stdout_taken) return write_stdout(text);
-  (void)std::fputs(text.c_str(), stderr);
-  return {};
+std::vector<std::string> all_notes(const Optimized& made) {
+  std::vector<std::string> out;
+  if (!made.before.losses.empty()) out.push_back("lost " + listed(made.before.losses));
+  out.insert(out.end(), made.file.notes.begin(), made.file.notes.end());
+  return out;
+}
+
+Result<int> work(const OptimizeRequest& r) {
+  auto made = run(r);
+  if (!made) return forward_error(made);
+  const Report facts = report(r, *made);
+  auto said = say({.facts = facts,
+                   .notes = all_notes(*made),
+                   .text = facts.str(Format::table) + "\n" + finished_line(r, *made),
+                   .report = r.report,
+                   .format = r.format,
+                   .quiet = r.quiet,
+                   .stdout_taken = r.report == "-" || (r.output == "-" && !r.dry_run)});
+  return said ? Result<int>(0) : forward_error(said);
 }
 
 Options optimize_options(OptimizeRequest& r) {
@@ -236,7 +222,7 @@ Options optimize_options(OptimizeRequest& r) {
   options.group("Output");
   options.add("-o,--output",
               text_value(r.output, "FILE", ".glb, .gltf with its .bin, - for a .glb on stdout"),
-              "the file to write", Role::run, "none");
+              "the file to write", Role::run, "none, it must be given");
   add_file_options(options, r.file);
   options.flag("--allow-loss", r.allow_loss,
                "write although the file holds what would be lost: skins, morph targets, lights, further "
@@ -256,18 +242,8 @@ Options optimize_options(OptimizeRequest& r) {
 int optimize_verb(std::span<const std::string> arguments) {
   OptimizeRequest request;
   Options options = optimize_options(request);
-  const Result<Action> action = options.parse(arguments);
-  if (!action) return report_error(action.error());
-  if (*action != Action::run) {
-    const auto written =
-        write_stdout(*action == Action::help ? options.help(colored(1)) : "scenegen " SCENEGEN_VERSION "\n");
-    return written ? 0 : report_error(written.error());
-  }
-  if (auto usable = check(request, options); !usable) return report_error(usable.error());
-  const auto made = run(request);
-  if (!made) return report_error(made.error());
-  const auto said = say(request, *made);
-  return said ? 0 : report_error(said.error());
+  return run_verb(options, arguments,
+                  {.check = [&] { return check(request, options); }, .work = [&] { return work(request); }});
 }
 
 }  // namespace scenegen::tools

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "scene/limits.h"
+#include "tools/verb.h"
 
 namespace scenegen::tools {
 
@@ -42,17 +43,6 @@ Value test_set_value(std::uint32_t& target) {
   Value value = whole_value<std::uint32_t>(target, 5, 48);
   value.spell = [&target] { return target == 0 ? std::string() : std::to_string(target); };
   return value;
-}
-
-Value order_value(timeline::AxisOrder& target) {
-  return {Value::Kind::text, "AXES", "a sign and a letter per axis",
-          [&target](std::string_view text) -> Result<void> {
-            auto order = timeline::parse_axis_order(text);
-            if (!order) return forward_error(order);
-            target = *order;
-            return {};
-          },
-          [&target] { return timeline::str(target); }};
 }
 
 void add_town_options(Options& options, GenerateRequest& r) {
@@ -158,6 +148,17 @@ Value bits_value(std::uint32_t& target) {
 }
 
 }  // namespace
+
+Value order_value(timeline::AxisOrder& target) {
+  return {Value::Kind::text, "AXES", "a sign and a letter per axis",
+          [&target](std::string_view text) -> Result<void> {
+            auto order = timeline::parse_axis_order(text);
+            if (!order) return forward_error(order);
+            target = *order;
+            return {};
+          },
+          [&target] { return timeline::str(target); }};
+}
 
 void add_curve_options(Options& options, timeline::AppearanceOptions& a) {
   constexpr double kLongest = 1e6;  // s
@@ -283,15 +284,7 @@ std::vector<Conflict> conflicts(const GenerateRequest& r) {
     for (Conflict& conflict : profile_conflicts(r.profile, std::span(&r.profile.profile, 1)))
       out.push_back(std::move(conflict));
   }
-  if (r.output == "-" && !r.dry_run) {
-    refuse({"--format"},
-           "cannot be used with --output -, which puts the .glb on stdout (--report FILE writes JSON)");
-  }
-  if (r.report == "-") {
-    refuse({"--format"}, "cannot be used with --report -, which puts the report on stdout");
-    if (r.output == "-" && !r.dry_run)
-      refuse({"--report"}, "cannot be used with --output -: stdout takes one of them");
-  }
+  add_stdout_conflicts(r.dry_run ? "" : r.output, r.report, out);
   return out;
 }
 

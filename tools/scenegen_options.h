@@ -43,6 +43,8 @@ struct GenerateRequest {
 /// Copies the seed and the threads to where the rooms look for them.
 void settle(GenerateRequest& request);
 
+/// The order of a curve's axes.
+[[nodiscard]] Value order_value(timeline::AxisOrder& target);
 /// --order, --cells, --interval, --hold and --coherence, in the present group.
 void add_curve_options(Options& options, timeline::AppearanceOptions& appearance);
 void add_visibility_option(Options& options, gltf::VisibilityEncoding& visibility);

@@ -7,8 +7,6 @@
 #include <thread>
 
 #include "scene/gltf/patch.h"
-#include "scene/gltf/restructure.h"
-#include "scene/import/import.h"
 #include "scene/limits.h"
 #include "scene/transform.h"
 #include "timeline/calendar.h"
@@ -16,6 +14,8 @@
 #include "timeline/statistics.h"
 #include "tools/scenegen.h"
 #include "tools/schedule_options.h"
+#include "tools/source_model.h"
+#include "tools/verb.h"
 
 namespace scenegen::tools {
 
@@ -42,38 +42,18 @@ struct Scheduled {
 
 // ---- The way of the data
 
-/// The model with every object in a node of its own.
-Result<gltf::ReadResult> read_objects(const ScheduleRequest& r, Scheduled& out) {
-  auto read = import::read_model(r.model, r.import);
-  if (!read) return read;
-  for (const gltf::Ignored& left_out : read->ignored) {
-    if (left_out.where == r.model)  // by the import; what a glTF holds beyond a scene stays in its document
-      out.notes.push_back("not imported: " + human_count(left_out.count) + " x " + left_out.what);
-  }
-  if (read->scene.objects.size() == 0)
-    return fail(ErrorKind::bad_input, r.model, "has no objects: no node that is drawn has a mesh");
-  if (!gltf::needs_restructuring(*read, gltf::Split::none)) return read;
-  auto again = gltf::restructure(std::move(*read), gltf::Split::none);
-  if (!again) return forward_error(again);
-  out.notes.insert(out.notes.end(), again->notes.begin(), again->notes.end());
-  return std::move(again->read);
-}
-
 /// "3 objects without a task: 'a', 'b', 'c'"
 template <class Items, class NameOf>
-std::string listed(std::string what, const Items& items, const NameOf& name_of) {
+std::string listed(const std::string& one, const std::string& rest, const Items& items,
+                   const NameOf& name_of) {
   constexpr std::size_t kMost = 5;
-  what = human_count(items.size()) + " " + what + ": ";
+  std::string out = counted(items.size(), one) + rest + ": ";
   for (std::size_t i = 0; i < std::min(items.size(), kMost); ++i)
-    what += (i == 0 ? "'" : ", '") + std::string(name_of(items[i])) + "'";
-  return what + (items.size() > kMost ? ", ..." : "");
+    out += (i == 0 ? "'" : ", '") + std::string(name_of(items[i])) + "'";
+  return out + (items.size() > kMost ? ", ..." : "");
 }
 
-std::string plural(std::size_t count, const std::string& one) {
-  return count == 1 ? one : one + "s";
-}
-
-Result<void> map(const ScheduleRequest& r, gltf::ReadResult& read, Scheduled& out) {
+Result<void> map(const ScheduleRequest& r, const gltf::ReadResult& read, Scheduled& out) {
   auto facts = ObjectFacts::make(read.scene, *read.source);
   if (!facts) return forward_error(facts);
   timeline::MappingOptions options;
@@ -94,7 +74,7 @@ Result<void> map(const ScheduleRequest& r, gltf::ReadResult& read, Scheduled& ou
     return fail(ErrorKind::bad_input, r.plan,
                 "no task is about an object of the model (say which in columns 'objects' or 'selector'); the "
                 "model has " +
-                    listed(plural(out.names.size(), "object"), out.mapping.objects_without_tasks,
+                    listed("object", "", out.mapping.objects_without_tasks,
                            [&](ObjectId id) { return out.names[id.value]; }));
   }
   if (!r.save_mapping.empty())
@@ -106,10 +86,9 @@ Result<void> settle_unmatched(const ScheduleRequest& r, Scene& scene, const Mapp
   const std::vector<ObjectId>& rest = mapping.objects_without_tasks;
   if (rest.empty() || r.unmatched == Unmatched::show) return {};
   if (r.unmatched == Unmatched::error) {
-    return fail(
-        ErrorKind::bad_input, r.model,
-        listed(plural(rest.size(), "object") + " without a task (--unmatched show or hide lets them be)",
-               rest, [&](ObjectId id) { return scene.objects.names[id.value]; }));
+    return fail(ErrorKind::bad_input, r.model,
+                listed("object", " without a task (--unmatched show or hide lets them be)", rest,
+                       [&](ObjectId id) { return scene.objects.names[id.value]; }));
   }
   const float never[] = {0.0F};
   const TrackId track = scene.add_track(Property::visibility, Interpolation::step, never, never);
@@ -146,13 +125,15 @@ Result<Scheduled> schedule(const ScheduleRequest& r, const std::vector<std::stri
   if (!plan) return forward_error(plan);
   out.plan = std::move(*plan);
   progress.stage("reading " + r.model);
-  auto read = read_objects(r, out);
-  if (!read) return forward_error(read);
-  Scene& scene = read->scene;
+  auto model = read_source_model(r.model, r.import);
+  if (!model) return forward_error(model);
+  out.notes = std::move(model->notes);
+  const gltf::SourceDocument& source = *model->read.source;
+  Scene& scene = model->read.scene;
   out.names = scene.objects.names;
-  progress.stage("mapping " + human_count(out.plan.tasks.size()) + " tasks to " +
-                 human_count(scene.objects.size()) + " objects");
-  if (auto mapped = map(r, *read, out); !mapped) return forward_error(mapped);
+  progress.stage("mapping " + counted(out.plan.tasks.size(), "task") + " to " +
+                 counted(scene.objects.size(), "object"));
+  if (auto mapped = map(r, model->read, out); !mapped) return forward_error(mapped);
   timeline::Schedule times = timeline::make_activities(out.plan, out.mapping, scene, activity_options(r));
   auto profiled = timeline::apply_profiles(scene, times.activities, r.profile.options);
   if (!profiled)
@@ -167,18 +148,24 @@ Result<Scheduled> schedule(const ScheduleRequest& r, const std::vector<std::stri
   out.duration_s = scene.duration_s;
   if (r.dry_run || r.format != Format::table || !r.report.empty())
     out.moments = timeline::statistics(scene, 1).moments;
+  std::optional<gltf::OutputFile> mapping_file;  // in its place only when the model is: both or none
+  if (!r.save_mapping.empty()) {
+    auto prepared = prepare_file(r.save_mapping, out.saved_mapping);
+    if (!prepared) return forward_error(prepared);
+    mapping_file.emplace(std::move(*prepared));
+  }
   if (!r.dry_run) {
     progress.stage("writing " + r.output);
     gltf::PatchOptions options;
     options.visibility = r.visibility;
     options.material_copy_of = profiled->copy_of;
-    auto file = gltf::patch(*read->source, scene, r.output, options);
+    auto file = gltf::patch(source, scene, r.output, options);
     if (!file) return forward_error(file);
     out.file = std::move(*file);
     out.notes.insert(out.notes.end(), out.file.notes.begin(), out.file.notes.end());
   }
-  if (!r.save_mapping.empty()) {
-    if (auto written = write_file(r.save_mapping, out.saved_mapping); !written) return forward_error(written);
+  if (mapping_file) {
+    if (auto placed = mapping_file->commit(); !placed) return forward_error(placed);
   }
   out.seconds = stopwatch.seconds();
   return out;
@@ -217,11 +204,10 @@ std::string last_date(const Scheduled& made) {
 std::string finished_line(const ScheduleRequest& r, const Scheduled& made) {
   const std::string output = r.output == "-" ? "stdout" : r.output;
   return (r.dry_run ? "(not written)" : output + "  " + human_bytes(made.file.bytes)) + "  " +
-         human_count(scheduled_objects(made)) + " of " + human_count(made.names.size()) + " objects  " +
-         human_count(made.calendar.tasks.size()) + " " + plural(made.calendar.tasks.size(), "task") + "  " +
-         first_date(made) + " to " + last_date(made) + "  timeline " +
-         human_real(static_cast<double>(made.duration_s), 2) + " s  made in " + human_seconds(made.seconds) +
-         "\n";
+         human_count(scheduled_objects(made)) + " of " + counted(made.names.size(), "object") + "  " +
+         counted(made.calendar.tasks.size(), "task") + "  " + first_date(made) + " to " + last_date(made) +
+         "  timeline " + human_real(static_cast<double>(made.duration_s), 2) + " s  made in " +
+         human_seconds(made.seconds) + "\n";
 }
 
 std::vector<std::string> all_notes(const Scheduled& made) {
@@ -236,12 +222,12 @@ std::vector<std::string> all_notes(const Scheduled& made) {
                   " more of that kind (--report lists them)");
   }
   if (!m.tasks_without_objects.empty()) {
-    out.push_back(listed(plural(m.tasks_without_objects.size(), "task") + " without objects",
-                         m.tasks_without_objects, [&](std::uint32_t i) { return made.plan.tasks[i].name; }));
+    out.push_back(listed("task", " without objects", m.tasks_without_objects,
+                         [&](std::uint32_t i) { return made.plan.tasks[i].name; }));
   }
   if (!m.objects_without_tasks.empty()) {
-    out.push_back(listed(plural(m.objects_without_tasks.size(), "object") + " without a task",
-                         m.objects_without_tasks, [&](ObjectId id) { return made.names[id.value]; }));
+    out.push_back(listed("object", " without a task", m.objects_without_tasks,
+                         [&](ObjectId id) { return made.names[id.value]; }));
   }
   std::vector<ObjectId> lost, equal;
   for (const Mapping::Shared& shared : m.claimed_twice) {
@@ -249,13 +235,12 @@ std::vector<std::string> all_notes(const Scheduled& made) {
     if (shared.equals) equal.push_back(shared.object);
   }
   if (!equal.empty()) {
-    out.push_back(
-        listed(plural(equal.size(), "object") + " claimed twice by rules as sure, all of which count", equal,
-               [&](ObjectId id) { return made.names[id.value]; }));
+    out.push_back(listed("object", " claimed twice by rules as sure, all of which count", equal,
+                         [&](ObjectId id) { return made.names[id.value]; }));
   }
   if (!lost.empty()) {
-    out.push_back(listed(plural(lost.size(), "object") + " claimed twice, of which the surer rule counts",
-                         lost, [&](ObjectId id) { return made.names[id.value]; }));
+    out.push_back(listed("object", " claimed twice, of which the surer rule counts", lost,
+                         [&](ObjectId id) { return made.names[id.value]; }));
   }
   return out;
 }
@@ -346,23 +331,20 @@ std::string mapping_table(const Scheduled& made, Format format) {
   return table.str(format);
 }
 
-Result<void> say(const ScheduleRequest& r, const Scheduled& made, const std::vector<std::string>& arguments) {
-  const Report facts = report(r, made, arguments);
-  if (!r.quiet) {
-    for (const std::string& note : all_notes(made))
-      (void)std::fprintf(stderr, "note: %s\n", printable(note).c_str());
-  }
-  if (!r.report.empty()) {
-    if (auto written = write_file(r.report, pretty(facts.json())); !written) return written;
-  }
-  if (r.format == Format::json) return write_stdout(facts.str(r.format));
-  if (r.format == Format::csv) return write_stdout(mapping_table(made, r.format));
-  if (r.quiet) return {};
-  const std::string text = (r.dry_run ? mapping_table(made, r.format) : "") + finished_line(r, made);
-  const bool stdout_taken = r.report == "-" || r.save_mapping == "-" || (r.output == "-" && !r.dry_run);
-  if (!stdout_taken) return write_stdout(text);
-  (void)std::fputs(text.c_str(), stderr);
-  return {};
+Result<int> work(const ScheduleRequest& r, const std::vector<std::string>& arguments) {
+  auto made = schedule(r, arguments);
+  if (!made) return forward_error(made);
+  const Report facts = report(r, *made, arguments);
+  auto said =
+      say({.facts = facts,
+           .notes = all_notes(*made),
+           .text = (r.dry_run ? mapping_table(*made, Format::table) : "") + finished_line(r, *made),
+           .csv = mapping_table(*made, Format::csv),
+           .report = r.report,
+           .format = r.format,
+           .quiet = r.quiet,
+           .stdout_taken = r.report == "-" || r.save_mapping == "-" || (r.output == "-" && !r.dry_run)});
+  return said ? Result<int>(0) : forward_error(said);
 }
 
 }  // namespace
@@ -370,22 +352,11 @@ Result<void> say(const ScheduleRequest& r, const Scheduled& made, const std::vec
 int schedule_verb(std::span<const std::string> arguments) {
   ScheduleRequest request;
   Options options = schedule_options(request);
-  const Result<Action> action = options.parse(arguments);
-  if (!action) return report_error(action.error());
-  Result<void> done;
-  if (*action == Action::help) {
-    done = write_stdout(options.help(colored(1)));
-  } else if (*action == Action::version) {
-    done = write_stdout("scenegen " SCENEGEN_VERSION "\n");
-  } else if (done = check_schedule(request, options); done && request.dump_config) {
-    done = write_stdout(pretty(options.config(schedule_conflicts(request))));
-  } else if (done) {
-    const std::vector<std::string> canonical = options.canonical_arguments();
-    const auto made = schedule(request, canonical);
-    if (!made) return report_error(made.error());
-    done = say(request, *made, canonical);
-  }
-  return done ? 0 : report_error(done.error());
+  return run_verb(options, arguments,
+                  {.check = [&] { return check_schedule(request, options); },
+                   .dump_config = &request.dump_config,
+                   .conflicts = [&] { return schedule_conflicts(request); },
+                   .work = [&] { return work(request, options.canonical_arguments()); }});
 }
 
 }  // namespace scenegen::tools

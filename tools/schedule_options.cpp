@@ -4,6 +4,8 @@
 
 #include "scene/limits.h"
 #include "tools/scenegen_options.h"
+#include "tools/source_model.h"
+#include "tools/verb.h"
 
 namespace scenegen::tools {
 
@@ -11,29 +13,6 @@ namespace {
 
 using timeline::CurveKind;
 using timeline::DateOrder;
-
-Value order_value(timeline::AxisOrder& target) {
-  return {Value::Kind::text, "AXES", "such as +x+y+z, z up",
-          [&target](std::string_view text) -> Result<void> {
-            auto order = timeline::parse_axis_order(text);
-            if (!order) return forward_error(order);
-            target = *order;
-            return {};
-          },
-          [&target] { return timeline::str(target); }};
-}
-
-Value unit_value(double& target) {
-  Value value = real_value(target, 1e-9, 1e9, "M");
-  value.spell = [&target] { return target == 0 ? std::string() : shortest(target); };
-  return value;
-}
-
-Value up_value(import::UpAxis& target) {
-  using import::UpAxis;
-  return choice_value<UpAxis>(
-      target, {{"auto", UpAxis::automatic}, {"x", UpAxis::x}, {"y", UpAxis::y}, {"z", UpAxis::z}}, "AXIS");
-}
 
 /// The curve, or no stagger at all.
 Value curve_value(timeline::ActivityOptions& target) {
@@ -97,7 +76,8 @@ void add_time_options(Options& options, ScheduleRequest& r) {
   options.add("--cells", size3_value(a.cells, glm::uvec3(1), glm::uvec3(limits::kMaxCellsPerAxis), "XxYxZ"),
               "cells of the curve over the model; objects of one cell follow in the file's order",
               Role::content);
-  options.add("--order", order_value(a.order), "order of axes along the curve", Role::content);
+  options.add("--order", order_value(a.order),
+              "axes from the fastest to the slowest, with directions; z is up", Role::content);
   options.add("--share", real_value(a.share, 0, 1, "X"),
               "part of a task's time that is spent on each object; they overlap where there are many",
               Role::content);
@@ -122,11 +102,7 @@ Options schedule_options(ScheduleRequest& r) {
   add_time_options(options, r);
   add_profile_options(options, r.profile, ProfileSource::plan);
   options.group("Model");
-  options.add("--up", up_value(r.import.up),
-              "the model's axis that points up; auto: what the file says, else what its format means",
-              Role::content);
-  options.add("--unit", unit_value(r.import.metres_per_unit), "metres in a unit of the model", Role::content,
-              "what the file says, else 1");
+  add_import_options(options, r.import);
   options.group("Output");
   options.add("-o,--output",
               text_value(r.output, "FILE", ".glb, .gltf with its .bin, - for a .glb on stdout"),
@@ -146,23 +122,12 @@ Options schedule_options(ScheduleRequest& r) {
 
 std::vector<Conflict> schedule_conflicts(const ScheduleRequest& r) {
   std::vector<Conflict> out;
-  if (import::is_gltf(r.model)) {
-    for (const char* name : {"--up", "--unit"})
-      out.push_back({name, "cannot be used with glTF, which is in metres and Y up"});
-  }
+  add_import_conflicts(r.model, out);
   if (!r.activities.stagger) {
     for (const char* name : {"--cells", "--order", "--share", "--steps"})
       out.push_back({name, "cannot be used with --curve none, which lets objects of a task go together"});
   }
-  if (r.output == "-" && !r.dry_run) {
-    out.push_back(
-        {"--format",
-         "cannot be used with --output -, which puts the .glb on stdout (--report FILE writes JSON)"});
-    if (r.report == "-")
-      out.push_back({"--report", "cannot be used with --output -: stdout takes one of them"});
-  }
-  if (r.report == "-")
-    out.push_back({"--format", "cannot be used with --report -, which puts the report on stdout"});
+  add_stdout_conflicts(r.dry_run ? "" : r.output, r.report, out);
   if (r.save_mapping == "-")
     out.push_back({"--format", "cannot be used with --save-mapping -, which puts the mapping on stdout"});
   return out;

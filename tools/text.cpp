@@ -187,6 +187,10 @@ std::string human_count(std::uint64_t count) {
   return digits;
 }
 
+std::string counted(std::uint64_t count, const std::string& one, const std::string& many) {
+  return human_count(count) + " " + (count == 1 ? one : many.empty() ? one + "s" : many);
+}
+
 std::string human_seconds(double seconds) {
   std::array<char, 48> buffer{};
   if (seconds >= 99.95) {

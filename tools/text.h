@@ -40,6 +40,8 @@ namespace scenegen::tools {
 [[nodiscard]] std::string human_bytes(std::uint64_t bytes);
 /// Groups of three digits: "38 016".
 [[nodiscard]] std::string human_count(std::uint64_t count);
+/// "1 object", "38 016 objects"; `many`: a plural that is not made with an s.
+[[nodiscard]] std::string counted(std::uint64_t count, const std::string& one, const std::string& many = {});
 /// "0.21 s", "12.5 s", "3 min 05 s".
 [[nodiscard]] std::string human_seconds(double seconds);
 /// `digits` behind the point, trailing zeros dropped: (0.95, 3) is "0.95".

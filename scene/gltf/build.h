@@ -107,6 +107,7 @@ class LookTable {
 struct Origins {
   std::vector<std::uint32_t> node, instance;  ///< by object
   std::vector<std::uint32_t> node_of_frame;
+  bool merged = false;  ///< SourceDocument::merged
 };
 /// Frames, objects, cameras, their tracks.
 [[nodiscard]] Origins build_objects(Document& document, Data& data, const Hierarchy& hierarchy,

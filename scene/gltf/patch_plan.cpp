@@ -125,9 +125,8 @@ class PatchPlanner {
 };
 
 void PatchPlanner::check_counts() const {
-  if (!document_.instance_sets.empty())
-    reject(root_,
-           "a file of layout merged, whose objects share nodes: write its scene with --layout nodes first");
+  if (in_.source.merged)
+    reject(root_, "a file of layout merged, whose objects have no nodes; layout nodes gives them some");
   if (scene_.objects.size() == in_.source.node_of_object.size() && scene_.frames.size() >= old_frames_ &&
       scene_.tracks.size() >= in_.source.track_count && scene_.meshes.size() >= document_.meshes.size() &&
       scene_.materials.size() >= document_.materials.size())

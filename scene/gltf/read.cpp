@@ -26,6 +26,7 @@ std::shared_ptr<const SourceDocument> keep_source(const std::string& name, const
     out->buffers.emplace_back(buffers[i].begin(), buffers[i].end());
   out->node_of_object = std::move(origins.node);
   out->instance_of_object = std::move(origins.instance);
+  out->merged = origins.merged;
   out->node_of_frame = std::move(origins.node_of_frame);
   out->track_count = static_cast<std::uint32_t>(scene.tracks.size());
   if (out->track_count != 0) out->visibility_of_object = scene.objects.visibility;
@@ -53,6 +54,7 @@ ReadResult read_block(const Block& file, const std::string& name, const std::str
   VisibilityTable visibility((1ULL << 20) + input_bytes);
   const Motions motions = build_motions(document, data, visibility, out.scene);
   Origins origins = build_objects(document, data, hierarchy, motions, visibility, out.scene);
+  origins.merged = !document.instance_sets.empty();
   out.scene.info = std::move(document.info);
   out.ignored = document.ignored.take();
   if (options.keep_source)

@@ -19,7 +19,9 @@ struct SourceDocument {
       buffers;                                ///< resolved bytes of /buffers/i (GLB chunk, data URI, file)
   std::vector<std::uint32_t> node_of_object;  ///< /nodes/i of each object of the scene
   std::vector<std::uint32_t>
-      instance_of_object;                    ///< index within an instancing node; empty when there are none
+      instance_of_object;  ///< index within an instancing node; empty when there are none
+  /// Layout merged: objects are parts of meshes that they share, and have no nodes of their own.
+  bool merged = false;
   std::vector<std::uint32_t> node_of_frame;  ///< /nodes/i of each frame of the scene
   /// What the scene held when it was read; what patch() finds beside it is new.
   std::uint32_t track_count = 0;

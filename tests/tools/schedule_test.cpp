@@ -236,6 +236,42 @@ TEST_CASE("schedule: dry run and formats; a mapping saved and used again") {
   CHECK_THAT(again.err, Catch::Matchers::Contains("note: map.json: task '2' is not in the plan any more\n"));
 }
 
+TEST_CASE("schedule: the model and the mapping are written both or not at all") {
+  Workplace w;
+  w.plan(kPlan);
+  CHECK(w.error("model.gltf plan.csv -o out.glb -q --save-mapping /dev/full", 3) ==
+        "/dev/full: cannot be written: No space left on device");
+  // A pipe without a reader takes no model: the mapping stays away, and the one that was there stays.
+  write_file(w.folder().file("map.json"), "before");
+  ProcessOptions closed;
+  closed.folder = w.folder().path();
+  closed.stdout_closed_pipe = true;
+  const ProcessResult result =
+      run(SCENEGEN_PROGRAM, words("schedule model.gltf plan.csv -q -o - --save-mapping map.json"), closed);
+  CHECK(result.code == 3);
+  CHECK(read_file(w.folder().file("map.json")) == "before");
+  CHECK(w.folder().entries() == std::vector<std::string>{"map.json", "model.gltf", "plan.csv"});
+}
+
+TEST_CASE("schedule: objects of layout merged are refused before anything else, also in a dry run") {
+  Workplace w;
+  w.plan("id,start,finish,objects\n1,2024-03-01,2024-03-03,*\n");
+  ProcessOptions here;
+  here.folder = w.folder().path();
+  REQUIRE(run(SCENEGEN_PROGRAM, words("--floors 1 --layout merged -q -o merged.glb"), here).code == 0);
+  const std::string refusal =
+      "merged.glb: is of layout merged, in which objects have no nodes that could get a timeline: scenegen "
+      "optimize gives them some (--layout nodes -o merged_nodes.glb)";
+  CHECK(w.error("merged.glb plan.csv -o out.glb", 1) == refusal);
+  CHECK(w.error("merged.glb plan.csv --dry-run --save-mapping map.json", 1) == refusal);
+  REQUIRE(
+      run(SCENEGEN_PROGRAM, words("optimize merged.glb -q --layout nodes -o merged_nodes.glb"), here).code ==
+      0);
+  const ProcessResult result = w.call("merged_nodes.glb plan.csv -q -o out.glb");
+  INFO(result.err);
+  CHECK(result.code == 0);
+}
+
 TEST_CASE("schedule: the IFC house goes up from the example plan") {
   const std::string model = "/usr/share/assimp/models/IFC/AC14-FZK-Haus.ifc";
   Workplace w;

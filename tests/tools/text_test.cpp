@@ -74,6 +74,11 @@ TEST_CASE("people's units") {
   CHECK(human_count(999) == "999");
   CHECK(human_count(38016) == "38 016");
   CHECK(human_count(1'000'000) == "1 000 000");
+  CHECK(counted(0, "object") == "0 objects");
+  CHECK(counted(1, "object") == "1 object");
+  CHECK(counted(38016, "object") == "38 016 objects");
+  CHECK(counted(1, "vertex", "vertices") == "1 vertex");
+  CHECK(counted(3, "vertex", "vertices") == "3 vertices");
   CHECK(human_seconds(0.214) == "0.21 s");
   CHECK(human_seconds(12.34) == "12.3 s");
   CHECK(human_seconds(184.6) == "3 min 05 s");
