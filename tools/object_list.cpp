@@ -80,14 +80,16 @@ class Tree {
     out_ += "\n";
   }
   void group(std::size_t depth, std::uint32_t node) {
-    line(depth, facts_.node_name(node), "(" + counted(below_[node], "object") + ")", facts_.node_extras(node));
+    line(depth, facts_.node_name(node), "(" + counted(below_[node], "object") + ")",
+         facts_.node_extras(node));
   }
   void leaf(std::size_t depth, ObjectId object, std::uint32_t node) {
     std::string what = printable(join(materials_of(scene_, object), "; "));
     if (!what.empty()) what = "[" + what + "]";
     if (node != kNone && below_[node] > 1)
       what += (what.empty() ? "(" : "  (") + counted(below_[node] - 1, "object") + " below)";
-    line(depth, scene_.objects.names[object.value], what, node == kNone ? Extras() : facts_.node_extras(node));
+    line(depth, scene_.objects.names[object.value], what,
+         node == kNone ? Extras() : facts_.node_extras(node));
   }
 
   const Scene& scene_;

@@ -20,11 +20,12 @@ void add_import_conflicts(const std::string& model, std::vector<Conflict>& confl
 
 /// A model with every object in a node of its own.
 struct SourceModel {
-  gltf::ReadResult read;                            ///< with `source`
-  std::uint64_t split_objects = 0, expanded = 0;    ///< gltf::Restructured
-  std::vector<std::string> notes;                   ///< what was not imported, what stayed whole
+  gltf::ReadResult read;                          ///< with `source`
+  std::uint64_t split_objects = 0, expanded = 0;  ///< gltf::Restructured
+  std::vector<std::string> notes;                 ///< what was not imported, what stayed whole
 };
-/// Errors beside those of reading: a model without objects, and one of layout merged, whose objects have no nodes.
+/// Errors beside those of reading: a model without objects, and one of layout merged, whose objects have no
+/// nodes.
 [[nodiscard]] Result<SourceModel> read_source_model(const std::string& path,
                                                     const import::ImportOptions& options,
                                                     gltf::Split split = gltf::Split::none);

@@ -47,7 +47,8 @@ void add_stdout_conflicts(const std::string& output, const std::string& report,
   }
   if (report != "-") return;
   conflicts.push_back({"--format", "cannot be used with --report -, which puts the report on stdout"});
-  if (output == "-") conflicts.push_back({"--report", "cannot be used with --output -: stdout takes one of them"});
+  if (output == "-")
+    conflicts.push_back({"--report", "cannot be used with --output -: stdout takes one of them"});
 }
 
 Result<void> check_output_and_report(const std::string& output, const std::string& report,

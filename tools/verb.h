@@ -19,17 +19,17 @@ struct VerbSteps {
   std::function<std::vector<Conflict>()> conflicts = {};  ///< options that are left out of that
   std::function<Result<int>()> work;                      ///< the exit code
 };
-/// Reads the arguments into what `options` write to; prints the help, the version or the configuration, or does
-/// the work. Errors are printed. Returns the exit code.
+/// Reads the arguments into what `options` write to; prints the help, the version or the configuration, or
+/// does the work. Errors are printed. Returns the exit code.
 int run_verb(Options& options, std::span<const std::string> arguments, const VerbSteps& steps);
 
 /// What a verb has made, and where it may say so.
 struct Answer {
   const Report& facts;
   std::vector<std::string> notes;
-  std::string text;                       ///< for people
-  std::optional<std::string> csv = {};    ///< instead of the facts
-  std::string report = {};                ///< --report
+  std::string text;                     ///< for people
+  std::optional<std::string> csv = {};  ///< instead of the facts
+  std::string report = {};              ///< --report
   Format format = Format::table;
   bool quiet = false;
   bool stdout_taken = false;  ///< by a file: the text goes to stderr
@@ -39,8 +39,8 @@ struct Answer {
 /// Options that need stdout, which `--output -` or `--report -` takes. `output`: "" when nothing is written.
 void add_stdout_conflicts(const std::string& output, const std::string& report,
                           std::vector<Conflict>& conflicts);
-/// Whether a verb that makes one scene of one model can write its files. The model itself may be replaced: it is
-/// read before that. `output`: "" when nothing is written.
+/// Whether a verb that makes one scene of one model can write its files. The model itself may be replaced: it
+/// is read before that. `output`: "" when nothing is written.
 [[nodiscard]] Result<void> check_output_and_report(const std::string& output, const std::string& report,
                                                    const NamedPath& model);
 

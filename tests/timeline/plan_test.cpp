@@ -76,6 +76,22 @@ TEST_CASE("dates are read when they can mean only one day") {
   CHECK(moment("3.4.2024", DateOrder::day_month_year) == "2024-04-03");
   CHECK(moment("3.4.2024", DateOrder::month_day_year) == "2024-03-04");
 
+  CHECK(moment("Wed 3.4.24") == "2024-04-03");
+  CHECK(moment("Mon 3/4/24 08:00") == "2024-03-04T08:00:00");
+  CHECK(moment("Mi 10.04.24") == "2024-04-10");
+  CHECK(moment("Mo. 04.03.2024") == "2024-03-04");
+  CHECK(moment("Wednesday, 3 April 2024") == "2024-04-03");
+  CHECK(moment("Tue 1969-12-30") == "1969-12-30");
+  CHECK(moment("Mon 10.04.24") == "'Mon 10.04.24': is no Monday but a Wednesday");
+  CHECK(moment("Wed 3.4.24", DateOrder::month_day_year) == "'Wed 3.4.24': is no Wednesday but a Monday");
+  CHECK(moment("Sat 3/2/24") ==
+        "'Sat 3/2/24': may be day or month first, a Saturday both; write YYYY-MM-DD, or say --date-order dmy "
+        "or mdy");
+  CHECK(moment("Sat 3/2/24", DateOrder::month_day_year) == "2024-03-02");
+  CHECK(moment("Sat 30/30/24") == "'Sat 30/30/24': there is no month 30");
+  CHECK(moment("Sat") == "'Sat': wanted a date YYYY-MM-DD, with a time YYYY-MM-DDTHH:MM");
+  CHECK(moment("Sat 5") == "'Sat 5': wanted a date YYYY-MM-DD, with a time YYYY-MM-DDTHH:MM");
+
   CHECK(moment("3.4.2024") ==
         "'3.4.2024': may be day or month first; write YYYY-MM-DD, or say --date-order dmy or mdy");
   CHECK(moment("03/13/2024", DateOrder::day_month_year) == "'03/13/2024': there is no month 13");

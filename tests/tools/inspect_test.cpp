@@ -76,7 +76,8 @@ TEST_CASE("inspect --objects: instances are listed below their node") {
   const json list = json::parse(w.call("town.glb --objects --format json").out);
   CHECK(list["objects"].size() == facts["objects"]);
   const ProcessResult tree = w.call("town.glb --objects");
-  CHECK(static_cast<std::size_t>(std::count(tree.out.begin(), tree.out.end(), '\n')) > list["objects"].size());
+  CHECK(static_cast<std::size_t>(std::count(tree.out.begin(), tree.out.end(), '\n')) >
+        list["objects"].size());
 }
 
 TEST_CASE("inspect reads what animate and schedule read, and says what is no model") {
@@ -96,9 +97,10 @@ TEST_CASE("inspect reads what animate and schedule read, and says what is no mod
   write_file(w.folder().file("plan.csv"), "id,start\n");
   write_file(w.folder().file("plan.glb"), "id,start\n");
   for (const char* options : {"", " --objects"}) {
-    CHECK(w.call(std::string("plan.csv") + options).err ==
-          "error: plan.csv: '.csv' is no model format that is read (glTF and what Assimp reads: .fbx .ifc .obj "
-          ".dae .stl .3mf …)\n");
+    CHECK(
+        w.call(std::string("plan.csv") + options).err ==
+        "error: plan.csv: '.csv' is no model format that is read (glTF and what Assimp reads: .fbx .ifc .obj "
+        ".dae .stl .3mf …)\n");
     CHECK(w.call(std::string("plan.glb") + options).err ==
           "error: plan.glb: is no glTF: it begins neither as a .glb nor as a JSON object\n");
   }

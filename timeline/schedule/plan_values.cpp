@@ -5,6 +5,7 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 namespace scenegen::timeline {
@@ -43,6 +44,28 @@ unsigned month_of(std::string_view word) {
   return 0;
 }
 
+constexpr std::array<std::string_view, 7> kWeekdays{"Sunday",   "Monday", "Tuesday", "Wednesday",
+                                                    "Thursday", "Friday", "Saturday"};
+constexpr std::array<std::string_view, 7> kGermanWeekdays{"Sonntag",    "Montag",  "Dienstag", "Mittwoch",
+                                                          "Donnerstag", "Freitag", "Samstag"};
+
+/// 0 (Sunday) to 6 by the name, or its first three letters in English, its first two in German.
+std::optional<unsigned> weekday_of(std::string_view word) {
+  if (word.size() < 2) return std::nullopt;
+  const std::string plain = plain_word(word);
+  for (unsigned d = 0; d < kWeekdays.size(); ++d) {
+    const std::string english = plain_word(kWeekdays[d]), german = plain_word(kGermanWeekdays[d]);
+    if (plain == english || plain == english.substr(0, 3) || plain == german || plain == german.substr(0, 2))
+      return d;
+  }
+  return std::nullopt;
+}
+
+unsigned weekday_at(CivilSeconds midnight_s) {
+  namespace chr = std::chrono;
+  return chr::weekday(chr::sys_days(chr::days(midnight_s / kDay))).c_encoding();
+}
+
 struct DateParts {
   unsigned year = 0, month = 0, day = 0;
 };
@@ -67,7 +90,9 @@ Result<DateParts> order_parts(std::string_view text, unsigned first, unsigned se
   return DateParts{year, second, first};
 }
 
-Result<DateParts> parse_date_parts(std::string_view text, std::string_view date, DateOrder order) {
+/// `short_years`: two digits are a year of this century.
+Result<DateParts> parse_date_parts(std::string_view text, std::string_view date, DateOrder order,
+                                   bool short_years) {
   if (date.size() == 8 && all_digits(date))
     return DateParts{number_of(date.substr(0, 4)), number_of(date.substr(4, 2)), number_of(date.substr(6))};
   std::vector<std::string_view> parts;
@@ -84,10 +109,12 @@ Result<DateParts> parse_date_parts(std::string_view text, std::string_view date,
     return DateParts{number_of(parts[0]), number_of(parts[1]), number_of(parts[2])};
   if (!short_number(parts[0]) || (named == 0 && !short_number(parts[1])))
     return bad(text, std::string(kWantedDate));
-  if (short_number(parts[2])) return bad(text, "the year needs four digits");
-  if (!year_number(parts[2])) return bad(text, std::string(kWantedDate));
-  if (named != 0) return DateParts{number_of(parts[2]), named, number_of(parts[0])};
-  return order_parts(text, number_of(parts[0]), number_of(parts[1]), number_of(parts[2]), order);
+  const bool short_year = short_years && parts[2].size() == 2 && all_digits(parts[2]);
+  if (!short_year && short_number(parts[2])) return bad(text, "the year needs four digits");
+  if (!short_year && !year_number(parts[2])) return bad(text, std::string(kWantedDate));
+  const unsigned year = number_of(parts[2]) + (short_year ? 2000 : 0);
+  if (named != 0) return DateParts{year, named, number_of(parts[0])};
+  return order_parts(text, number_of(parts[0]), number_of(parts[1]), year, order);
 }
 
 Result<CivilSeconds> date_seconds(std::string_view text, const DateParts& parts) {
@@ -103,6 +130,33 @@ Result<CivilSeconds> date_seconds(std::string_view text, const DateParts& parts)
                          std::to_string(static_cast<unsigned>(last.day())) + " days");
   }
   return CivilSeconds{chr::sys_days(date).time_since_epoch().count()} * kDay;
+}
+
+/// "Wed 10.04.24", as office programs write dates: the weekday tells days from months where both could be,
+/// and that the century is right.
+Result<CivilSeconds> parse_day_of_week(std::string_view text, std::string_view date, DateOrder order,
+                                       unsigned weekday) {
+  std::optional<Error> error;
+  std::vector<CivilSeconds> days, fitting;
+  for (const DateOrder tried : {DateOrder::day_month_year, DateOrder::month_day_year}) {
+    if (order != DateOrder::unknown && tried != order) continue;
+    const auto parts = parse_date_parts(text, date, tried, true);
+    const auto day = parts ? date_seconds(text, *parts) : tl::unexpected<Error>(parts.error());
+    if (!day) {
+      if (!error) error = day.error();
+      continue;
+    }
+    days.push_back(*day);
+    if (weekday_at(*day) == weekday && (fitting.empty() || fitting.back() != *day)) fitting.push_back(*day);
+  }
+  if (fitting.size() == 1) return fitting.front();
+  if (days.empty()) return tl::unexpected<Error>(std::move(*error));
+  const std::string wanted(kWeekdays[weekday]);
+  if (fitting.size() == 2) {
+    return bad(text, "may be day or month first, a " + wanted +
+                         " both; write YYYY-MM-DD, or say --date-order dmy or mdy");
+  }
+  return bad(text, "is no " + wanted + " but a " + std::string(kWeekdays[weekday_at(days.front())]));
 }
 
 /// HH:MM, HH:MM:SS, a fraction of the last is dropped.
@@ -201,6 +255,22 @@ Result<CivilSeconds> whole_seconds(double seconds, std::string_view text) {
   return static_cast<CivilSeconds>(std::llround(seconds));
 }
 
+namespace {
+
+Result<CivilSeconds> parse_day(std::string_view text, std::string_view date, DateOrder order) {
+  const std::size_t end = date.find_first_of(" ,.");
+  if (end != std::string_view::npos) {
+    if (const auto weekday = weekday_of(date.substr(0, end))) {
+      const std::size_t rest = std::min(date.find_first_not_of(" ,.", end), date.size());
+      return parse_day_of_week(text, date.substr(rest), order, *weekday);
+    }
+  }
+  auto parts = parse_date_parts(text, date, order, false);
+  return parts ? date_seconds(text, *parts) : forward_error(parts);
+}
+
+}  // namespace
+
 Result<Moment> parse_moment(std::string_view text, DateOrder order) {
   const std::string_view whole = trimmed(text);
   const std::size_t colon = whole.find(':');
@@ -211,9 +281,7 @@ Result<Moment> parse_moment(std::string_view text, DateOrder order) {
     date = trimmed(whole.substr(0, gap));
     clock = whole.substr(gap + 1);
   }
-  auto parts = parse_date_parts(whole, date, order);
-  if (!parts) return forward_error(parts);
-  auto seconds = date_seconds(whole, *parts);
+  auto seconds = parse_day(whole, date, order);
   if (!seconds) return forward_error(seconds);
   if (clock.empty()) return Moment{*seconds, false};
   auto of_day = parse_clock(whole, clock);

@@ -15,8 +15,9 @@ struct Moment {
 };
 
 /// "2024-03-01", "2024-03-01T08:00", "2024-03-01 08:00:30", "20240301", "2024/03/01"; "13.03.2024",
-/// "03/13/2024" where only one order is a date or `order` says which; "1-Mar-2024". Years 1 to 9999. A zone
-/// "Z" is let be, others are refused.
+/// "03/13/2024" where only one order is a date or `order` says which; "1-Mar-2024"; "Wed 10.04.24"
+/// (English, "Mi" German), where the weekday must fit, may tell the order, and a year of two digits is of
+/// this century. Years 1 to 9999. A zone "Z" is let be, others are refused.
 [[nodiscard]] Result<Moment> parse_moment(std::string_view text, DateOrder order);
 /// "5" (days), "5d", "2w", "8h", "30min", "P5D", "PT8H0M0S"; not negative, at most 100 years. Days have 24
 /// hours and weeks 7 days.
