@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -26,5 +27,13 @@ struct DeviceInfo {
 /// Every Vulkan device there is, also those that cannot be used. Error (no_device): no Vulkan loader or
 /// instance.
 [[nodiscard]] Result<std::vector<DeviceInfo>> list_devices();
+
+namespace vkr {
+struct Device;
+}
+/// An open device that several renderers use in turn or side by side, all on one thread: drivers give out a
+/// limited number of instances a process (NVIDIA's some twenty). Errors as of Renderer::create().
+[[nodiscard]] Result<std::shared_ptr<vkr::Device>> share_device(const DeviceOptions& options);
+[[nodiscard]] const DeviceInfo& info_of(const vkr::Device& device);
 
 }  // namespace scenegen::render

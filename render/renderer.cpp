@@ -74,7 +74,7 @@ CameraBlock camera_block(const View& view, const Box& scene_m, bool shadows) {
 struct Renderer::State {
   // In order of construction; destroyed backwards.
   RendererOptions options;
-  std::unique_ptr<vkr::Device> device;
+  std::shared_ptr<vkr::Device> device;
   std::optional<vkr::Memory> memory;
   std::optional<vkr::Pipelines> pipelines;
   std::optional<DrawScene> scene;
@@ -215,7 +215,8 @@ void Renderer::State::record_color(vkr::Frame& frame, vkr::Barriers& barriers, F
   rest.draw(3, 1, 0, 0);
   strategy->draw_blended(blended);
   pass.end();
-  record_readback(frame.commands, color->result(), readback(frame.color), barriers);
+  if (options.outputs.readback)
+    record_readback(frame.commands, color->result(), readback(frame.color), barriers);
   report.draws = pass.solid_draws() + blended.draws();
   report.triangles = pass.solid_triangles() + blended.triangles();
 }
@@ -224,8 +225,11 @@ void Renderer::State::record_ids(vkr::Frame& frame, vkr::Barriers& barriers, Fra
   PassRecording pass(context(frame, barriers), *ids);
   strategy->draw_solid(pass);
   pass.end();
-  if (options.outputs.ids) record_readback(frame.commands, ids->color, readback(frame.ids), barriers);
-  if (options.outputs.depth) record_readback(frame.commands, ids->depth, readback(frame.depth), barriers);
+  const Outputs& wanted = options.outputs;
+  if (wanted.ids && wanted.readback)
+    record_readback(frame.commands, ids->color, readback(frame.ids), barriers);
+  if (wanted.depth && wanted.readback)
+    record_readback(frame.commands, ids->depth, readback(frame.depth), barriers);
   report.ids_draws = pass.solid_draws();
   report.ids_triangles = pass.solid_triangles();
 }
@@ -288,7 +292,8 @@ void Renderer::State::finish(FrameResult& out) {
   report.gpu_ms = ring->gpu_ms(*frame).value_or(-1.0);
   start = Clock::now();
   const std::size_t pixels = std::size_t{options.size.x} * options.size.y;
-  const auto copy = [&](auto& to, const vkr::Buffer& from, bool wanted) {
+  const auto copy = [&](auto& to, const vkr::Buffer& from, bool drawn) {
+    const bool wanted = drawn && options.outputs.readback;
     to.resize(wanted ? pixels * 4 / sizeof(to[0]) : 0);
     if (wanted) std::memcpy(to.data(), from.mapped(), pixels * 4);
   };
@@ -313,9 +318,12 @@ Result<Renderer> Renderer::create(const Scene& scene, const timeline::Player& pl
     return fail(ErrorKind::usage, "--strategy", "unknown value '" + options.strategy + "'");
   auto state = std::make_unique<State>();
   state->options = options;
-  auto device = vkr::open_device(options.device);
-  if (!device) return forward_error(device);
-  state->device = std::move(*device);
+  state->device = options.shared_device;
+  if (!state->device) {
+    auto device = share_device(options.device);
+    if (!device) return forward_error(device);
+    state->device = std::move(*device);
+  }
   if (Result<void> fits = state->check_size(options.size); !fits) return forward_error(fits);
   Result<void> built = state->guarded([&] { state->build(scene, player); });
   if (!built) return forward_error(built);

@@ -22,10 +22,12 @@ struct Outputs {
   bool color = true;
   bool ids = false;
   bool depth = false;
+  bool readback = true;  ///< false: they stay on the device, and FrameResult has none
 };
 
 struct RendererOptions {
   DeviceOptions device;
+  std::shared_ptr<vkr::Device> shared_device;  ///< used in place of opening one for `device`
   glm::uvec2 size{1280, 720};
   std::uint32_t samples = 4;  ///< of the colour picture: 1 or 4
   Outputs outputs;

@@ -44,7 +44,7 @@ struct Group {
 
 struct Positional {
   std::string name;
-  std::string* target;
+  std::function<void(const std::vector<std::string>&)> take;
   std::string help;
   CLI::Option* handle;
 };
@@ -130,7 +130,17 @@ void Options::flag(const std::string& names, bool& target, std::string help, Rol
 }
 
 void Options::positional(const std::string& name, std::string& target, std::string help) {
-  state_->positionals.push_back({name, &target, std::move(help), state_->app.add_option(name)});
+  state_->positionals.push_back({name,
+                                 [&target](const std::vector<std::string>& texts) { target = texts.back(); },
+                                 std::move(help), state_->app.add_option(name)});
+}
+
+void Options::positional(const std::string& name, std::vector<std::string>& target, std::string help) {
+  CLI::Option* handle =
+      state_->app.add_option(name.substr(0, name.find('.')))->expected(1, 1 << 20)->allow_extra_args();
+  handle->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  state_->positionals.push_back(
+      {name, [&target](const std::vector<std::string>& texts) { target = texts; }, std::move(help), handle});
 }
 
 void Options::add_general(bool& quiet) {
@@ -194,7 +204,7 @@ Result<void> Options::State::take_positionals() {
     if (positional.handle->count() == 0) {
       return fail(ErrorKind::usage, "", "missing " + positional.name + " (usage: " + usage.front() + ")");
     }
-    *positional.target = positional.handle->results().back();
+    positional.take(positional.handle->results());
   }
   return {};
 }

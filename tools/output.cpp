@@ -303,7 +303,11 @@ Progress::Progress(std::string label, std::uint64_t total, bool quiet)
     : label_(std::move(label)), total_(total), active_(!quiet && terminal(STDERR_FILENO)) {}
 
 Progress::~Progress() {
-  if (drawn_) (void)std::fputs("\r\x1b[K", stderr);
+  clear();
+}
+
+void Progress::clear() {
+  if (std::exchange(drawn_, false)) (void)std::fputs("\r\x1b[K", stderr);
 }
 
 void Progress::advance(std::uint64_t count) {

@@ -106,6 +106,8 @@ class Progress {
   void advance(std::uint64_t count = 1);
   /// Steps of unlike work: shows the name of the step that begins.
   void stage(std::string label);
+  /// Takes the line away until the next step, so that other output has the terminal to itself.
+  void clear();
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -7,6 +7,7 @@
 namespace scenegen::tools {
 
 int frames_verb(std::span<const std::string> arguments);
+int bench_verb(std::span<const std::string> arguments);
 /// Prints the Vulkan devices there are.
 int list_devices_verb();
 

@@ -1,16 +1,11 @@
 // sceneplay frames FILE -o DIR: plays a file and writes one picture a frame.
 #include <algorithm>
-#include <array>
-#include <cstdio>
-#include <cstdlib>
 #include <deque>
 #include <filesystem>
-#include <fstream>
 #include <future>
 #include <optional>
 #include <thread>
 
-#include "render/camera_path.h"
 #include "render/image_file.h"
 #include "render/renderer.h"
 #include "render/strategy_names.h"
@@ -18,6 +13,8 @@
 #include "scene/limits.h"
 #include "timeline/calendar.h"
 #include "timeline/player.h"
+#include "tools/drawing_options.h"
+#include "tools/frame_fields.h"
 #include "tools/frame_times.h"
 #include "tools/output.h"
 #include "tools/sceneplay.h"
@@ -32,87 +29,13 @@ struct FramesRequest {
   std::string file, folder, times, camera, camera_path, report;
   double fps = 25;
   double length_s = 0;
-  glm::uvec2 size{1280, 720};
   render::PictureFormat format = render::PictureFormat::png;
-  std::uint32_t samples = 4;
   bool ids = false, depth = false;
-  bool shadows = true;
   std::string strategy = "inline";
-  std::uint32_t octree_n = 0;
-  std::uint64_t octree_mib = 1024;
-  bool late_visibility = false;
-  render::NodeForm node_form = render::NodeForm::automatic;
   std::uint32_t frames_in_flight = 2;
-  bool full_barriers = false;
-  std::string device;
-  bool list_devices = false;
-  bool validation = false;
+  DrawingOptions drawing;
   bool quiet = false;
 };
-
-/// Where each frame is seen from.
-class CameraMan {
- public:
-  [[nodiscard]] static Result<CameraMan> make(const FramesRequest& request, const Scene& scene);
-  [[nodiscard]] render::View view(const timeline::Player& player) const {
-    if (path_) return path_->view(player.time_s(), aspect_);
-    if (camera_) return render::view_of_camera(*camera_, player.world_from_camera(id_), aspect_);
-    return framed_;
-  }
-
- private:
-  float aspect_ = 1.0F;
-  std::optional<render::CameraPath> path_;
-  std::optional<Camera> camera_;
-  CameraId id_;
-  render::View framed_;
-};
-
-Result<std::string> read_text(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  constexpr std::size_t kMost = std::size_t{64} << 20;
-  std::string out;
-  std::array<char, 65536> piece;
-  while (in && out.size() <= kMost) {
-    in.read(piece.data(), piece.size());
-    out.append(piece.data(), static_cast<std::size_t>(in.gcount()));
-  }
-  if (!in.eof() || out.size() > kMost)
-    return fail(ErrorKind::io, path, "cannot be read (or is above 64 MiB)");
-  return out;
-}
-
-Result<CameraId> find_camera(const Scene& scene, const std::string& wanted) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
-    if (scene.cameras[i].name == wanted || std::to_string(i) == wanted) return CameraId(i);
-    names.push_back(scene.cameras[i].name.empty() ? std::to_string(i) : scene.cameras[i].name);
-  }
-  names.emplace_back("auto");
-  if (scene.cameras.empty())
-    return fail(ErrorKind::usage, "--camera", "the file has no camera; 'auto' frames the scene");
-  return fail(ErrorKind::usage, "--camera", unknown_word("camera", wanted, names));
-}
-
-Result<CameraMan> CameraMan::make(const FramesRequest& request, const Scene& scene) {
-  CameraMan man;
-  man.aspect_ = static_cast<float>(request.size.x) / static_cast<float>(request.size.y);
-  if (!request.camera_path.empty()) {
-    auto text = read_text(request.camera_path);
-    if (!text) return forward_error(text);
-    auto path = render::parse_camera_path(*text, request.camera_path);
-    if (!path) return forward_error(path);
-    man.path_ = std::move(*path);
-  } else if (request.camera != "auto" && (!request.camera.empty() || !scene.cameras.empty())) {
-    auto id = request.camera.empty() ? Result<CameraId>(CameraId(0)) : find_camera(scene, request.camera);
-    if (!id) return forward_error(id);
-    man.id_ = *id;
-    man.camera_ = scene.cameras[id->value];
-  } else {
-    man.framed_ = render::frame_boxes(object_bounds(scene), man.aspect_);
-  }
-  return man;
-}
 
 Result<std::vector<double>> moments(const FramesRequest& request, const Options& options,
                                     const Scene& scene) {
@@ -156,15 +79,15 @@ Result<Encoded> write_frame(const FramesRequest& request, std::size_t number,
     return write_file((std::filesystem::path(request.folder) / name).string(), bytes);
   };
   Result<void> written = write("frame_" + digits + "." + std::string(extension(request.format)),
-                               render::encode_picture(request.format, request.size, frame.rgba));
+                               render::encode_picture(request.format, request.drawing.size, frame.rgba));
   if (written && request.ids)
-    written = write("ids_" + digits + ".png", render::encode_ids(request.size, frame.ids));
+    written = write("ids_" + digits + ".png", render::encode_ids(request.drawing.size, frame.ids));
   if (written && request.depth) {
     std::vector<float> metres(frame.depth.size());
     std::transform(frame.depth.begin(), frame.depth.end(), metres.begin(), [&](float d) {
       return d > 0.0F ? view.distance_m(d) : std::numeric_limits<float>::infinity();
     });
-    written = write("depth_" + digits + ".pfm", render::encode_pfm(request.size, metres));
+    written = write("depth_" + digits + ".pfm", render::encode_pfm(request.drawing.size, metres));
   }
   if (!written) return forward_error(written);
   out.encode_ms = watch.seconds() * 1e3;
@@ -172,39 +95,15 @@ Result<Encoded> write_frame(const FramesRequest& request, std::size_t number,
 }
 
 ordered_json frame_json(const render::FrameReport& r, double seek_ms, double encode_ms) {
-  return {{"timeS", r.time_s},
-          {"objects", r.objects},
-          {"changed", r.changed},
-          {"visible", r.visible},
-          {"tested", r.tested},
-          {"nodes", r.nodes},
-          {"secondaries", r.secondaries},
-          {"recorded", r.recorded},
-          {"recordedDraws", r.recorded_draws},
-          {"indirectCommands", r.indirect_commands},
-          {"queries", r.queries},
-          {"believedHidden", r.believed_hidden},
-          {"answers", r.answers},
-          {"foundHidden", r.found_hidden},
-          {"reveals", r.reveals},
-          {"drawn", r.drawn},
-          {"draws", r.draws},
-          {"triangles", r.triangles},
-          {"shadowDraws", r.shadow_draws},
-          {"shadowTriangles", r.shadow_triangles},
-          {"idsDraws", r.ids_draws},
-          {"idsTriangles", r.ids_triangles},
-          {"uploadedBytes", r.uploaded_bytes},
-          {"stagesMs",
-           {{"seek", seek_ms},
-            {"update", r.update_ms},
-            {"cull", r.plan_ms},
-            {"record", r.record_ms},
-            {"submit", r.submit_ms},
-            {"wait", r.wait_ms},
-            {"gpu", r.gpu_ms < 0 ? ordered_json() : ordered_json(r.gpu_ms)},
-            {"readback", r.readback_ms},
-            {"encode", encode_ms}}}};
+  ordered_json out{{"timeS", r.time_s}};
+  for (const CounterField& field : counter_fields()) out[std::string(field.name)] = r.*field.value;
+  ordered_json& stages = out["stagesMs"] = {{"seek", seek_ms}};
+  for (const StageField& field : stage_fields()) {
+    const double ms = r.*field.value;
+    stages[std::string(field.name)] = ms < 0 ? ordered_json() : ordered_json(ms);
+  }
+  stages["encode"] = encode_ms;
+  return out;
 }
 
 /// Plays the times through the renderer: while the device draws a frame, the one before is encoded.
@@ -298,11 +197,11 @@ ordered_json report_json(const FramesRequest& request, Filming& filming, double 
           {"version", 1},
           {"file", request.file},
           {"device", {{"name", device.name}, {"type", device.type}, {"driver", device.driver}}},
-          {"size", {request.size.x, request.size.y}},
-          {"samples", request.samples},
+          {"size", {request.drawing.size.x, request.drawing.size.y}},
+          {"samples", request.drawing.samples},
           {"strategy", request.strategy},
           {"framesInFlight", request.frames_in_flight},
-          {"shadows", request.shadows},
+          {"shadows", request.drawing.shadows},
           {"loadS", load_s},
           {"totalS", total_s},
           {"deviceBytes", filming.renderer().device_bytes()},
@@ -311,20 +210,10 @@ ordered_json report_json(const FramesRequest& request, Filming& filming, double 
 }
 
 render::RendererOptions renderer_options(const FramesRequest& request) {
-  render::RendererOptions o;
-  o.device.wanted = request.device;
-  o.device.validation = request.validation;
-  o.size = request.size;
-  o.samples = request.samples;
+  render::RendererOptions o = request.drawing.renderer();
   o.outputs = {true, request.ids, request.depth};
   o.strategy = request.strategy;
-  o.how.objects_per_node = request.octree_n;
-  o.how.octree_bytes = request.octree_mib << 20;
-  o.how.late_visibility = request.late_visibility;
-  o.how.node_form = request.node_form;
-  o.shadows = request.shadows;
   o.frames_in_flight = request.frames_in_flight;
-  o.full_barriers = request.full_barriers;
   return o;
 }
 
@@ -335,40 +224,33 @@ Result<void> draw(const FramesRequest& request, const Options& options) {
   const Scene& scene = read->scene;
   auto times = moments(request, options, scene);
   if (!times) return forward_error(times);
-  auto camera = CameraMan::make(request, scene);
+  auto camera = request.camera_path.empty() ? CameraMan::of_scene(scene, request.camera, request.drawing.size)
+                                            : CameraMan::of_path(request.camera_path, request.drawing.size);
   if (!camera) return forward_error(camera);
   timeline::Player player(timeline::compile(scene));
   auto renderer = render::Renderer::create(scene, player, renderer_options(request));
   if (!renderer) return forward_error(renderer);
   if (auto made = make_folder(request.folder); !made) return made;
   std::size_t warned = 0;
-  const auto warn = [&](const render::Renderer& of) {
-    const std::vector<std::string> all = of.warnings();
-    for (; warned < all.size() && !request.quiet; ++warned)
-      (void)std::fprintf(stderr, "warning: %s\n", printable(all[warned]).c_str());
-  };
-  warn(*renderer);
+  print_warnings(*renderer, warned, request.quiet);
   const std::uint64_t objects = scene.objects.size();
   std::optional<Calendar> calendar = std::move(read->scene.info.calendar);
   *read = {};  // the renderer and the player hold what they need
   const double load_s = watch.seconds();
   Filming filming(request, std::move(player), std::move(*camera), std::move(*renderer), std::move(calendar));
   if (auto done = filming.run(*times); !done) return done;
-  warn(filming.renderer());  // what came up on the way
-  const std::vector<std::string> messages = filming.renderer().take_validation_messages();
-  if (!messages.empty())
-    return fail(ErrorKind::no_device, "validation",
-                std::to_string(messages.size()) + " messages, the first: " + messages.front());
+  print_warnings(filming.renderer(), warned, request.quiet);  // what came up on the way
+  if (auto clean = check_validation(filming.renderer()); !clean) return clean;
   if (!request.report.empty()) {
     const auto json = report_json(request, filming, load_s, watch.seconds());
     if (auto written = write_file(request.report, pretty(json)); !written) return written;
   }
   if (request.quiet) return {};
   return write_stdout(request.folder + "  " + human_count(times->size()) +
-                      (times->size() == 1 ? " frame  " : " frames  ") + std::to_string(request.size.x) + "x" +
-                      std::to_string(request.size.y) + "  " + human_bytes(filming.bytes()) + "  " +
-                      human_count(objects) + " objects  " + filming.renderer().device().name + "  " +
-                      human_seconds(watch.seconds()) + "\n");
+                      (times->size() == 1 ? " frame  " : " frames  ") +
+                      std::to_string(request.drawing.size.x) + "x" + std::to_string(request.drawing.size.y) +
+                      "  " + human_bytes(filming.bytes()) + "  " + human_count(objects) + " objects  " +
+                      filming.renderer().device().name + "  " + human_seconds(watch.seconds()) + "\n");
 }
 
 void add_options(Options& options, FramesRequest& r) {
@@ -376,7 +258,8 @@ void add_options(Options& options, FramesRequest& r) {
   options.group("Output");
   options.add("-o,--output", text_value(r.folder, "DIR"),
               "folder for frame_00000.png and so on; made when missing");
-  options.add("--size", size2_value(r.size, {1, 1}, {limits::kMaxFrameSide, limits::kMaxFrameSide}, "WxH"),
+  options.add("--size",
+              size2_value(r.drawing.size, {1, 1}, {limits::kMaxFrameSide, limits::kMaxFrameSide}, "WxH"),
               "size of the pictures in pixels");
   options.add("--format",
               choice_value<render::PictureFormat>(r.format, {{"png", render::PictureFormat::png},
@@ -405,38 +288,9 @@ void add_options(Options& options, FramesRequest& r) {
               Role::run, "the file's first, else auto");
   options.add("--camera-path", text_value(r.camera_path, "FILE"),
               "camera path as JSON (docs/CAMERA_PATH.md)");
-  options.group("Drawing");
-  options.add("--samples", choice_value<std::uint32_t>(r.samples, {{"1", 1}, {"4", 4}}, "N"),
-              "samples a pixel");
-  options.add("--shadows", on_off_value(r.shadows), "shadows of the sun");
-  options.add("--strategy", choice_value<std::string>(r.strategy, render::strategy_choices()),
-              "way of drawing; all give the same pictures (docs/STRATEGIES.md)");
-  options.add(
-      "--octree-n", whole_value(r.octree_n, 0U, 100000U),
-      "objects a node of the octree holds, and draws a kept command buffer; 0: the smallest from 200 on "
-      "that fits");
-  options.add(
-      "--node-form",
-      choice_value<render::NodeForm>(r.node_form, {{"auto", render::NodeForm::automatic},
-                                                   {"secondaries", render::NodeForm::secondaries},
-                                                   {"indirect", render::NodeForm::indirect}}),
-      "how the octree's commands are kept: command buffers, or indirect draws in device memory; auto: "
-      "what costs less on the device");
-  options.add("--octree-memory", whole_value(r.octree_mib, std::uint64_t{1}, std::uint64_t{1} << 20, "MIB"),
-              "what --strategy octree may take; without room for it, inline is used");
-  options.flag("--late-visibility", r.late_visibility,
-               "queries: believe results of earlier frames; what comes into view may appear frames too late");
-  options.add("--frames-in-flight",
-              choice_value<std::uint32_t>(r.frames_in_flight, {{"1", 1}, {"2", 2}, {"3", 3}}, "N"),
-              "frames at work at once; 1: processor and device one after the other");
-  options.add("--barriers", choice_value<bool>(r.full_barriers, {{"exact", false}, {"full", true}}),
-              "full: a full barrier at every step, to look for missing ones");
-  options.group("Device");
-  options.add("--device", text_value(r.device, "NAME|INDEX"), "Vulkan device", Role::run,
-              "a discrete GPU, else any");
-  options.flag("--list-devices", r.list_devices,
-               "print the Vulkan devices there are");  // handled before parsing
-  options.add("--validation", on_off_value(r.validation), "check every Vulkan call with the Khronos layer");
+  add_drawing_options(options, r.drawing, choice_value<std::string>(r.strategy, render::strategy_choices()),
+                      choice_value<std::uint32_t>(r.frames_in_flight, {{"1", 1}, {"2", 2}, {"3", 3}}, "N"));
+  add_device_options(options, r.drawing);
   options.group("General");
   options.add_general(r.quiet);
 }
@@ -447,9 +301,6 @@ int frames_verb(std::span<const std::string> arguments) {
   if (std::find(arguments.begin(), arguments.end(), "--list-devices") != arguments.end())
     return list_devices_verb();
   FramesRequest request;
-  if (const char* wanted = std::getenv("SCENEPLAY_VALIDATION");
-      wanted != nullptr && std::string_view(wanted) == "1")
-    request.validation = true;
   Options options("sceneplay frames", {"sceneplay frames FILE -o DIR [options]"},
                   "plays a file and writes one picture a frame.");
   add_options(options, request);

@@ -224,6 +224,16 @@ Result<std::vector<DeviceInfo>> list_devices() {
   }
 }
 
+Result<std::shared_ptr<vkr::Device>> share_device(const DeviceOptions& options) {
+  auto opened = vkr::open_device(options);
+  if (!opened) return forward_error(opened);
+  return std::shared_ptr<vkr::Device>(std::move(*opened));
+}
+
+const DeviceInfo& info_of(const vkr::Device& device) {
+  return device.info;
+}
+
 namespace vkr {
 
 std::vector<std::string> Device::take_messages() {

@@ -366,6 +366,50 @@ TEST_CASE("points, lines and triangles without normals are drawn; a broken image
   CHECK(at(2).z > at(2).x);
 }
 
+TEST_CASE("renderers share a device and take turns; without readback there are no pictures") {
+  const Scene scene = wall_scene();
+  RendererOptions options = test_options();
+  auto device = share_device(options.device);
+  REQUIRE(device);
+  options.shared_device = *device;
+  CHECK_FALSE(info_of(**device).driver.empty());
+  const View view = look({0, 2, 9}, {0, 1, 0}, options.size);
+  const std::vector<double> times{1, 3, 2, 5};
+  const auto alone = render::test::render(scene, times, view, test_options());
+  std::vector<Renderer> renderers;
+  std::vector<timeline::Player> players;
+  const auto timeline = timeline::compile(scene);
+  for (const bool readback : {true, false, true}) {
+    players.emplace_back(timeline);
+    options.outputs.readback = readback;
+    options.strategy = renderers.empty() ? "inline" : "octree";
+    auto made = Renderer::create(scene, players.back(), options);
+    REQUIRE(made);
+    renderers.push_back(std::move(*made));
+  }
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    for (std::size_t r = 0; r < renderers.size(); ++r)
+      REQUIRE(renderers[r].submit(players[r].seek(times[i]), players[r], view));
+    for (std::size_t r = 0; r < renderers.size(); ++r) {
+      FrameResult frame;
+      REQUIRE(renderers[r].finish(frame));
+      CHECK(frame.report.draws > 0);
+      if (r != 1) {
+        CHECK(same_bits(frame, alone[i]));
+      } else {
+        CHECK(frame.rgba.empty());
+        CHECK(frame.ids.empty());
+        CHECK(frame.depth.empty());
+      }
+    }
+  }
+  renderers.pop_back();  // the others go on
+  REQUIRE(renderers[0].submit(players[0].seek(0), players[0], view));
+  FrameResult frame;
+  REQUIRE(renderers[0].finish(frame));
+  for (const std::string& message : renderers[0].take_validation_messages()) FAIL_CHECK(message);
+}
+
 TEST_CASE("an empty scene is sky; one sample works; wrong options are errors") {
   Scene empty;
   RendererOptions options = test_options();

@@ -1,0 +1,232 @@
+// sceneplay bench: what it measures, keeps, resumes and refuses; and the arithmetic of its summaries.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "scene/gltf/write.h"
+#include "tests/render/render_support.h"
+#include "tests/tools/process.h"
+#include "tools/bench_results.h"
+
+using namespace scenegen;
+using namespace scenegen::test;
+using namespace scenegen::tools;
+
+namespace {
+
+ProcessResult play(const std::string& line, const ProcessOptions& options = {}) {
+  return run(SCENEPLAY_PROGRAM, words(line), options);
+}
+
+std::string wall_file(const TemporaryFolder& folder, const std::string& name = "wall.glb") {
+  const std::string path = folder.file(name);
+  REQUIRE(gltf::write(render::test::wall_scene(), path, {}));
+  return path;
+}
+
+/// Bytes of the single runs by name.
+std::map<std::string, std::string> runs_in(const std::string& folder) {
+  std::map<std::string, std::string> out;
+  if (!std::filesystem::exists(folder + "/runs")) return out;
+  for (const auto& entry : std::filesystem::directory_iterator(folder + "/runs")) {
+    const std::string name = entry.path().filename().string();
+    if (name.ends_with(".run.json")) out[name] = read_file(entry.path().string());
+  }
+  return out;
+}
+
+nlohmann::json results(const std::string& folder) {
+  return nlohmann::json::parse(read_file(folder + "/bench.json"));
+}
+
+std::size_t line_count(const std::string& text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+}  // namespace
+
+TEST_CASE("summaries and intervals") {
+  const Summary s = summarize({4, 1, 2, 3, 10});
+  CHECK(s.mean == 4);
+  CHECK(s.median == 3);
+  CHECK(s.min == 1);
+  CHECK(s.p95 == Approx(8.8));  // 0.8 of the way from the 4th to the 5th
+  CHECK_FALSE(interval95({5}));
+  // Mean 2, deviation 1, three samples: 4.303 / sqrt(3).
+  CHECK(interval95({1, 2, 3})->low == Approx(2 - 4.303 / std::sqrt(3.0)));
+  CHECK(interval95({1, 2, 3})->high == Approx(2 + 4.303 / std::sqrt(3.0)));
+  CHECK(interval95(std::vector<double>(100, 7.0))->low == Approx(7));
+}
+
+TEST_CASE("frames walk the moments to and fro") {
+  std::vector<std::size_t> walked;
+  for (std::int64_t i = -4; i < 7; ++i) walked.push_back(moment_of_frame(i, 4));
+  CHECK(walked == std::vector<std::size_t>{2, 3, 2, 1, 0, 1, 2, 3, 2, 1, 0});
+  CHECK(moment_of_frame(-3, 1) == 0);
+  CHECK(moment_of_frame(5, 1) == 0);
+}
+
+TEST_CASE("ways of drawing are read with their modifiers") {
+  const auto ways = parse_ways("inline,octree:n=100,queries-all:late");
+  REQUIRE(ways);
+  REQUIRE(ways->size() == 3);
+  CHECK_FALSE((*ways)[0].octree_n);
+  CHECK((*ways)[1].strategy == "octree");
+  CHECK((*ways)[1].octree_n == 100);
+  CHECK((*ways)[2].late);
+  CHECK(parse_ways("octre").error().str().find("did you mean 'octree'") != std::string::npos);
+  CHECK(parse_ways("octree:lat").error().str().find("did you mean 'late'") != std::string::npos);
+  for (const char* wrong : {"", "inline,", "inline,inline", "octree:n=0", "octree:n=x", "octree:"}) {
+    INFO(wrong);
+    CHECK_FALSE(parse_ways(wrong));
+  }
+}
+
+TEST_CASE("bench: cases, runs, counters and both files") {
+  const TemporaryFolder folder;
+  const std::string out = folder.file("deep/out");
+  write_file(folder.file("path.json"), R"({"keys":[{"time_s":0,"eye_m":[0,2,9],"target_m":[0,1,0]}]})");
+  write_file(folder.file("far.json"), R"({"keys":[{"time_s":0,"eye_m":[0,9,30],"target_m":[0,1,0]}]})");
+  const auto result = play("bench " + wall_file(folder) + " -o " + out +
+                           " --strategy inline,octree:n=10:secondaries --frames 6 --repeat 2 --warm-up 3 "
+                           "--size 32x18 --shadows off"
+                           " --frames-in-flight 1,3 --validation on --camera-path " +
+                           folder.file("path.json") + " --camera-path " + folder.file("far.json"));
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  CHECK(result.err.empty());
+  CHECK_THAT(result.out,
+             Catch::Matchers::Contains("vs best") && Catch::Matchers::Contains("octree:n=10:secondaries"));
+  CHECK(runs_in(out).size() == 2 * 2 * 2 * 2);
+  const nlohmann::json bench = results(out);
+  CHECK(bench["schema"] == "sceneplay/bench");
+  CHECK(bench["version"] == 1);
+  CHECK_FALSE(bench["device"]["driver"].get<std::string>().empty());
+  CHECK(bench["machine"]["cores"] >= 1);
+  REQUIRE(bench["cases"].size() == 8);
+  for (std::size_t i = 0; i < 8; i += 2) {
+    const nlohmann::json& by_inline = bench["cases"][i];
+    const nlohmann::json& by_octree = bench["cases"][i + 1];
+    CHECK(by_inline["framesInFlight"] == (i % 4 == 0 ? 1 : 3));
+    CHECK(by_octree["strategy"] == "octree:n=10:secondaries");
+    CHECK(by_inline["frames"] == 6);
+    CHECK(by_inline["repetitions"] == 2);
+    CHECK(by_inline["frameMs"]["runs"].size() == 2);
+    CHECK(std::min(by_inline["vsBest"].get<double>(), by_octree["vsBest"].get<double>()) == 1.0);
+    CHECK(by_inline["frameMs"]["min"].get<double>() > 0);
+    CHECK(by_inline["frameMs"]["low"] <= by_inline["frameMs"]["mean"]);
+    CHECK(by_inline["totalMs"].get<double>() == Approx(6 * by_inline["frameMs"]["mean"].get<double>()));
+    CHECK(by_inline["stagesMs"]["seek"]["mean"].get<double>() >= 0);
+    // Counters are those of the measured moments alone, and the same whatever was drawn before.
+    CHECK(by_inline["sameCounters"] == true);
+    CHECK(by_octree["sameCounters"] == true);
+    CHECK(by_inline["counters"]["visible"] == by_octree["counters"]["visible"]);
+    CHECK(by_inline["counters"]["changed"].get<double>() > 5);
+    CHECK(by_inline["counters"]["secondaries"] == 0);
+    CHECK(by_octree["counters"]["secondaries"].get<double>() > 1);
+    CHECK(by_inline["objects"] == 48);
+  }
+  const std::string csv = read_file(out + "/bench.csv");
+  CHECK(line_count(csv) == 9);
+  CHECK(csv.starts_with("file,camera,framesInFlight,strategy,objects,"));
+  CHECK(csv.find(",frameMs.mean,") != std::string::npos);
+  CHECK(csv.find(",counters.draws,") != std::string::npos);
+}
+
+TEST_CASE("bench --resume measures what is missing and nothing else") {
+  const TemporaryFolder folder;
+  const std::string out = folder.file("out");
+  const std::string call = "bench " + wall_file(folder) + " -o " + out +
+                           " --frames 4 --warm-up 2 --size 32x18 --shadows off --quiet --repeat 2 ";
+  REQUIRE(play(call + "--strategy inline,octree").code == 0);
+  const auto before = runs_in(out);
+  REQUIRE(before.size() == 4);
+  const auto [gone, kept] = std::pair(before.begin()->first, std::next(before.begin())->first);
+  std::filesystem::remove(out + "/runs/" + gone);
+  write_file(out + "/runs/" + kept, before.at(kept).substr(0, 200));  // cut off
+  const auto resumed = play(call + "--strategy inline,octree,brute --resume");
+  INFO(resumed.err);
+  REQUIRE(resumed.code == 0);
+  CHECK(resumed.out.empty());
+  const auto after = runs_in(out);
+  CHECK(after.size() == 6);
+  CHECK(results(out)["cases"].size() == 3);
+  for (const auto& [name, bytes] : before) {
+    INFO(name);
+    // Times of two measurements are never all equal.
+    CHECK((after.at(name) == bytes) == (name != gone && name != kept));
+  }
+  // What was measured otherwise is not mixed in.
+  const auto other = play(call + "--strategy inline --resume --samples 1");
+  CHECK(other.code == 2);
+  CHECK_THAT(other.err,
+             Catch::Matchers::Contains("--resume") && Catch::Matchers::Contains("samples 4, now it is 1"));
+  CHECK(runs_in(out) == after);
+  // Without --resume everything is anew.
+  REQUIRE(play(call + "--strategy inline").code == 0);
+  CHECK(runs_in(out).size() == 2);
+}
+
+TEST_CASE("bench: a run that is interrupted keeps what it had measured") {
+  const TemporaryFolder folder;
+  const std::string out = folder.file("out");
+  const std::string call =
+      "bench " + wall_file(folder) + " -o " + out +
+      " --frames 40 --size 64x36 --shadows off --quiet --repeat 200 --strategy inline,octree";
+  ProcessOptions options;
+  options.interrupt = SIGINT;
+  options.interrupt_when = [&] { return runs_in(out).size() >= 3; };
+  const auto killed = play(call, options);
+  CHECK(killed.signal == SIGINT);
+  const auto kept = runs_in(out);
+  CHECK(kept.size() >= 3);
+  CHECK(kept.size() < 400);
+  for (const auto& [name, bytes] : kept) CHECK(nlohmann::json::accept(bytes));
+}
+
+TEST_CASE("bench: what fails is named, and the rest is measured") {
+  const TemporaryFolder folder;
+  const std::string out = folder.file("out");
+  write_file(folder.file("broken.glb"), "glTF and nothing");
+  const auto result = play("bench " + folder.file("broken.glb") + " " + wall_file(folder) + " -o " + out +
+                           " --frames 3 --repeat 1 --size 32x18 --strategy inline");
+  CHECK(result.code == 1);
+  CHECK_THAT(result.err, Catch::Matchers::Contains("broken.glb"));
+  CHECK(line_count(result.err) == 1);
+  const nlohmann::json cases = results(out)["cases"];
+  REQUIRE(cases.size() == 2);
+  CHECK_THAT(cases[0]["error"].get<std::string>(), Catch::Matchers::Contains("broken.glb"));
+  CHECK(cases[1]["frames"] == 3);
+  CHECK(cases[1]["frameMs"]["low"].is_null());  // one run has no spread
+  CHECK(line_count(read_file(out + "/bench.csv")) == 3);
+}
+
+TEST_CASE("bench: wrong calls") {
+  const TemporaryFolder folder;
+  const std::string file = wall_file(folder);
+  const std::string start = "bench " + file + " -o " + folder.file("out") + " --size 16x9 ";
+  const auto check_error = [&](const std::string& line, int code, const std::string& part) {
+    const auto result = play(line);
+    INFO(line << ": " << result.err);
+    CHECK(result.code == code);
+    CHECK(result.out.empty());
+    CHECK(result.err.starts_with("error: "));
+    CHECK(line_count(result.err) == 1);
+    CHECK_THAT(result.err, Catch::Matchers::Contains(part));
+  };
+  check_error("bench -o x", 2, "FILE");
+  check_error("bench " + file, 2, "--output");
+  check_error(start + "--strategy inline,octre", 2, "did you mean 'octree'");
+  check_error(start + "--frames-in-flight 0", 2, "--frames-in-flight");
+  check_error(start + "--frames-in-flight 2,4", 2, "--frames-in-flight");
+  check_error(start + "--repeat 0", 2, "--repeat");
+  check_error(start + "--frames 3 --times 0", 2, "--times");
+  check_error(start + "--camera auto --camera-path x", 2, "--camera");
+  check_error(start + "--camera-path " + folder.file("none.json"), 3, "none.json");
+  check_error(start + "--device nonesuch", 2, "--device");
+  check_error("bench " + file + " -o " + file, 3, "wall.glb");
+  CHECK_FALSE(std::filesystem::exists(folder.file("out")));
+}

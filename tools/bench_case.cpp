@@ -1,0 +1,206 @@
+#include "tools/bench_case.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <deque>
+
+#include "render/strategy_names.h"
+#include "tools/frame_fields.h"
+#include "tools/output.h"
+
+namespace scenegen::tools {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> out;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    out.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return out;
+}
+
+Result<BenchWay> parse_way(std::string_view text) {
+  BenchWay way;
+  way.label = text;
+  const std::vector<std::string_view> parts = split(text, ':');
+  std::vector<std::string> names;
+  for (const auto& [name, value] : render::strategy_choices()) names.push_back(name);
+  way.strategy = parts.front();
+  if (std::find(names.begin(), names.end(), way.strategy) == names.end())
+    return fail(ErrorKind::usage, "", unknown_word("strategy", way.strategy, names));
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    if (parts[i] == "late") {
+      way.late = true;
+    } else if (parts[i] == "secondaries") {
+      way.form = render::NodeForm::secondaries;
+    } else if (parts[i] == "indirect") {
+      way.form = render::NodeForm::indirect;
+    } else if (parts[i].starts_with("n=")) {
+      auto n = parse_whole(parts[i].substr(2), 1, 100000);
+      if (!n) return forward_error(n);
+      way.octree_n = static_cast<std::uint32_t>(*n);
+    } else {
+      const std::vector<std::string> known{"late", "n=N", "secondaries", "indirect"};
+      return fail(ErrorKind::usage, "", unknown_word("modifier", parts[i], known));
+    }
+  }
+  return way;
+}
+
+/// Five digits behind the point: 10 ns.
+ordered_json rounded(const std::vector<double>& values) {
+  ordered_json out = ordered_json::array();
+  for (const double v : values) out.push_back(v < 0 ? -1.0 : std::round(v * 1e5) / 1e5);
+  return out;
+}
+
+}  // namespace
+
+Result<std::vector<BenchWay>> parse_ways(std::string_view text) {
+  std::vector<BenchWay> out;
+  for (const std::string_view part : split(text, ',')) {
+    auto way = parse_way(part);
+    if (!way) return forward_error(way);
+    const bool twice =
+        std::any_of(out.begin(), out.end(), [&](const BenchWay& w) { return w.label == way->label; });
+    if (twice) return fail(ErrorKind::usage, "", "'" + way->label + "' stands there twice");
+    out.push_back(std::move(*way));
+  }
+  return out;
+}
+
+std::string BenchCase::key() const {
+  return file + "|" + camera + "|" + std::to_string(frames_in_flight) + "|" + way.label;
+}
+
+ordered_json BenchRun::json() const {
+  ordered_json out{{"objects", objects}, {"frameMs", rounded(frame_ms)}, {"cpuMs", rounded(cpu_ms)}};
+  for (std::size_t i = 0; i < stages.size(); ++i) out["stagesMs"][stages[i]] = rounded(stages_ms[i]);
+  for (std::size_t i = 0; i < counters.size(); ++i)
+    out["counters"][std::string(counter_fields()[i].name)] = counters[i];
+  out["deviceBytes"] = device_bytes;
+  out["warnings"] = warnings;
+  return out;
+}
+
+std::optional<BenchRun> BenchRun::from_json(const ordered_json& json) {
+  try {
+    BenchRun run;
+    run.objects = json.at("objects").get<std::uint64_t>();
+    run.frame_ms = json.at("frameMs").get<std::vector<double>>();
+    run.cpu_ms = json.at("cpuMs").get<std::vector<double>>();
+    for (const auto& [name, values] : json.at("stagesMs").items()) {
+      run.stages.push_back(name);
+      run.stages_ms.push_back(values.get<std::vector<double>>());
+    }
+    for (const CounterField& field : counter_fields())
+      run.counters.push_back(json.at("counters").at(std::string(field.name)).get<std::uint64_t>());
+    run.device_bytes = json.at("deviceBytes").get<std::uint64_t>();
+    run.warnings = json.at("warnings").get<std::vector<std::string>>();
+    const auto complete = [&](const std::vector<double>& v) { return v.size() == run.frame_ms.size(); };
+    if (run.frame_ms.empty() || !complete(run.cpu_ms) ||
+        !std::all_of(run.stages_ms.begin(), run.stages_ms.end(), complete))
+      return std::nullopt;
+    return run;
+  } catch (const nlohmann::json::exception&) {
+    return std::nullopt;
+  }
+}
+
+std::size_t moment_of_frame(std::int64_t frame, std::size_t moments) {
+  if (moments <= 1) return 0;
+  const auto last = static_cast<std::int64_t>(moments) - 1;
+  const std::int64_t there = ((frame % (2 * last)) + 2 * last) % (2 * last);
+  return static_cast<std::size_t>(std::min(there, 2 * last - there));
+}
+
+Result<void> BenchSeat::make() {
+  if (renderer_) return {};
+  player_.emplace(timeline_);
+  auto made = render::Renderer::create(scene_, *player_, options_);
+  if (!made) return forward_error(made);
+  renderer_.emplace(std::move(*made));
+  return {};
+}
+
+/// What is collected while frames are finished.
+struct BenchSeat::Pass {
+  using Clock = std::chrono::steady_clock;
+
+  explicit Pass(std::size_t moments) : frames(moments) {
+    run.counters.assign(counter_fields().size(), 0);
+    run.stages.emplace_back("seek");
+    for (const StageField& field : stage_fields()) run.stages.emplace_back(field.name);
+    run.stages_ms.resize(run.stages.size());
+    for (std::vector<double>& values : run.stages_ms) values.reserve(frames);
+    run.frame_ms.reserve(frames);
+    run.cpu_ms.reserve(frames);
+  }
+
+  void finished(const render::FrameReport& report, double seek_ms) {
+    const Clock::time_point now = Clock::now();
+    const double frame_ms = std::chrono::duration<double, std::milli>(now - before).count();
+    before = now;
+    const std::int64_t number = next++;
+    if (number < 0 || number >= static_cast<std::int64_t>(frames)) return;
+    run.frame_ms.push_back(frame_ms);
+    run.stages_ms[0].push_back(seek_ms);
+    double cpu_ms = seek_ms;
+    for (std::size_t i = 0; i < stage_fields().size(); ++i) {
+      const StageField& field = stage_fields()[i];
+      run.stages_ms[i + 1].push_back(report.*field.value);
+      if (field.cpu) cpu_ms += report.*field.value;
+    }
+    run.cpu_ms.push_back(cpu_ms);
+    for (std::size_t i = 0; i < run.counters.size(); ++i)
+      run.counters[i] += report.*counter_fields()[i].value;
+    run.objects = report.objects;
+  }
+
+  std::size_t frames;
+  std::int64_t next = 0;  ///< number of the frame that is finished next; the warm-up's are negative
+  Clock::time_point before = Clock::now();
+  BenchRun run;
+};
+
+Result<BenchRun> BenchSeat::run(const std::vector<double>& moments, std::uint32_t warm_up,
+                                const std::function<void(std::size_t, std::size_t)>& on_frame) {
+  if (Result<void> made = make(); !made) return forward_error(made);
+  Pass pass(moments.size());
+  pass.next = -static_cast<std::int64_t>(warm_up);
+  const std::int64_t end = static_cast<std::int64_t>(moments.size()) + renderer_->most_in_flight() - 1;
+  const auto total = static_cast<std::size_t>(end - pass.next);
+  std::deque<double> seek_ms;
+  render::FrameResult result;
+  const auto finish_one = [&]() -> Result<void> {
+    if (Result<void> done = renderer_->finish(result); !done) return done;
+    pass.finished(result.report, seek_ms.front());
+    seek_ms.pop_front();
+    on_frame(total - static_cast<std::size_t>(end - pass.next), total);
+    return {};
+  };
+  for (std::int64_t i = pass.next; i < end; ++i) {
+    if (renderer_->in_flight() == renderer_->most_in_flight()) {
+      if (Result<void> done = finish_one(); !done) return forward_error(done);
+    }
+    const Stopwatch watch;
+    const timeline::ChangeSet& changes = player_->seek(moments[moment_of_frame(i, moments.size())]);
+    seek_ms.push_back(watch.seconds() * 1e3);
+    if (Result<void> done = renderer_->submit(changes, *player_, camera_.view(*player_)); !done)
+      return forward_error(done);
+  }
+  while (renderer_->in_flight() > 0) {
+    if (Result<void> done = finish_one(); !done) return forward_error(done);
+  }
+  pass.run.device_bytes = renderer_->device_bytes();
+  pass.run.warnings = renderer_->warnings();
+  if (Result<void> clean = check_validation(*renderer_); !clean) return forward_error(clean);
+  return std::move(pass.run);
+}
+
+}  // namespace scenegen::tools

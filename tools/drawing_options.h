@@ -1,0 +1,62 @@
+// What the verbs of sceneplay that draw have in common: how it is drawn, and where it is seen from.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/camera_path.h"
+#include "render/renderer.h"
+#include "scene/scene.h"
+#include "timeline/player.h"
+#include "tools/cli.h"
+
+namespace scenegen::tools {
+
+struct DrawingOptions {
+  glm::uvec2 size{1280, 720};
+  std::uint32_t samples = 4;
+  bool shadows = true;
+  std::uint32_t octree_n = 0;
+  std::uint64_t octree_mib = 1024;
+  bool late_visibility = false;
+  render::NodeForm node_form = render::NodeForm::automatic;
+  bool full_barriers = false;
+  std::string device;
+  bool list_devices = false;
+  bool validation = false;  ///< set by SCENEPLAY_VALIDATION=1 too
+
+  DrawingOptions();
+  /// Colour alone, with the default strategy and number of frames in flight.
+  [[nodiscard]] render::RendererOptions renderer() const;
+};
+
+/// Group "Drawing". How --strategy and --frames-in-flight are read differs from verb to verb.
+void add_drawing_options(Options& options, DrawingOptions& drawing, Value strategy, Value frames_in_flight);
+/// Group "Device".
+void add_device_options(Options& options, DrawingOptions& drawing);
+
+/// Prints those warnings of the renderer that are behind `known`, which counts them from then on.
+void print_warnings(const render::Renderer& renderer, std::size_t& known, bool quiet);
+/// An error when the validation layer reported something.
+[[nodiscard]] Result<void> check_validation(render::Renderer& renderer);
+
+/// Where each frame is seen from.
+class CameraMan {
+ public:
+  /// A camera of the scene by name or index, "auto" (frames all of it), or "" (the first one, else auto).
+  [[nodiscard]] static Result<CameraMan> of_scene(const Scene& scene, const std::string& camera,
+                                                  glm::uvec2 size);
+  /// A file as in docs/CAMERA_PATH.md.
+  [[nodiscard]] static Result<CameraMan> of_path(const std::string& file, glm::uvec2 size);
+  [[nodiscard]] render::View view(const timeline::Player& player) const;
+
+ private:
+  float aspect_ = 1.0F;
+  std::optional<render::CameraPath> path_;
+  std::optional<Camera> camera_;
+  CameraId id_;
+  render::View framed_;
+};
+
+}  // namespace scenegen::tools
