@@ -73,14 +73,16 @@ LogFit fit_log(std::span<const Observation> observations) {
 
 double query_cpu_s(const QueryProblem& p, double x) {
   if (p.exact)
-    return p.rerecorded_share * p.all_objects * p.record_s + (p.all_nodes + 1.0) * p.secondary_s +
-           x * p.ask_s;
-  return p.rerecorded_share * (p.all_objects - hidden(p.objects, x, p.all_objects)) * p.record_s +
+    return p.other_cpu_s + p.rerecorded_share * p.all_objects * p.record_s +
+           (p.all_nodes + 1.0) * p.secondary_s + x * p.ask_s;
+  return p.other_cpu_s +
+         p.rerecorded_share * (p.all_objects - hidden(p.objects, x, p.all_objects)) * p.record_s +
          (p.all_nodes + 1.0 - hidden(p.nodes, x, p.all_nodes)) * p.secondary_s + x * p.ask_s;
 }
 
 double query_gpu_s(const QueryProblem& p, double x) {
-  double sum = (p.all_elements - hidden(p.elements, x, p.all_elements)) * p.element_s + x * p.query_s;
+  double sum =
+      p.other_gpu_s + (p.all_elements - hidden(p.elements, x, p.all_elements)) * p.element_s + x * p.query_s;
   if (p.exact && x > 0.0) sum += hidden(p.objects, x, p.all_objects) * p.skip_s + p.second_part_s;
   return sum;
 }

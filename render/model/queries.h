@@ -42,6 +42,8 @@ struct QueryProblem {
   /// device; asking at all costs `second_part_s`.
   bool exact = false;
   double skip_s = 0, second_part_s = 0;
+  /// What the frame costs beyond nodes and queries: side by side, it decides which waits for which.
+  double other_cpu_s = 0, other_gpu_s = 0;
 };
 
 /// (3.11), (3.12). Without queries nothing is hidden; what is hidden is never more than there is.

@@ -112,6 +112,8 @@ class Octree {
   [[nodiscard]] std::uint32_t chunk_of(std::uint32_t slot) const { return chunk_of_slot_[slot]; }
   [[nodiscard]] std::size_t chunk_count() const { return chunks_.size() - free_chunks_.size(); }
   [[nodiscard]] std::size_t node_count() const { return nodes_.size() - 8 * free_children_.size(); }
+  /// Numbers below this may be nodes.
+  [[nodiscard]] std::size_t node_numbers() const { return nodes_.size(); }
   [[nodiscard]] const Node& node(std::uint32_t number) const { return nodes_[number]; }
   [[nodiscard]] const Node& root() const { return nodes_[0]; }
   /// Host memory held.

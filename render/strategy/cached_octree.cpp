@@ -35,6 +35,8 @@ void CachedOctree::choose_form() {
 }
 
 void CachedOctree::update(const timeline::ChangeSet& changes) {
+  changed_ = changes.count();
+  moved_ = changes.moved.size();
   inline_ ? inline_->update(changes) : octree_->update(changes);
 }
 
@@ -48,6 +50,8 @@ bool CachedOctree::catch_up(std::size_t slots) {
 
 void CachedOctree::plan(const View& view) {
   view_ = view;
+  const double could_be_recorded = static_cast<double>(chunks_.size()) * recordings();
+  changed_share_ = could_be_recorded > 0 ? static_cast<double>(counters_.recorded) / could_be_recorded : 0.0;
   counters_ = {};
   if (inline_) return plan_inline();
   const CullPlanes planes = cull_planes(frustum_of(view.clip_from_world), scene_.bounds_m());
@@ -127,11 +131,11 @@ model::FrameFacts CachedOctree::facts() const {
   const ScreenArea screen(view_, context_.size);
   facts.blended = load_of_slots(scene_, list_.blended, screen);
   add_scene_facts(scene_, screen, facts);
+  facts.changed = static_cast<double>(changed_);
+  facts.moved = static_cast<double>(moved_);
   foresee(facts);
-  // Kept for each pass, as secondaries are; written once for all, as indirect draws are.
-  const double times = indirect_form_ ? 1.0 : std::max(1U, passes_);
-  facts.chunks_rerecorded = static_cast<double>(counters_.recorded) / times;
-  facts.draws_rerecorded = static_cast<double>(counters_.recorded_draws) / times;
+  facts.chunks_rerecorded = static_cast<double>(counters_.recorded) / recordings();
+  facts.draws_rerecorded = static_cast<double>(counters_.recorded_draws) / recordings();
   facts.exact_octree = true;
   return facts;
 }

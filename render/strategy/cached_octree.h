@@ -59,6 +59,8 @@ class CachedOctree : public Strategy {
   /// The same in the second part of a pass, where its predicates say so.
   void draw_under(PassRecording& pass, std::span<const std::uint32_t> chunks, const Occlusion& predicates);
 
+  /// Share of the chunks in the frustum that had to be recorded in the last frame: alpha_n.
+  [[nodiscard]] double changed_share() const { return changed_share_; }
   /// Chunks are drawn by indirect draws, else from secondaries.
   [[nodiscard]] bool indirect() const { return indirect_form_; }
   [[nodiscard]] const Octree& tree() const { return octree_->tree(); }
@@ -71,6 +73,8 @@ class CachedOctree : public Strategy {
 
  private:
   void choose_form();
+  /// How often a chunk was recorded that changed: secondaries once a pass, indirect draws once a frame.
+  [[nodiscard]] double recordings() const { return indirect_form_ || passes_ < 2 ? 1.0 : passes_; }
   void give_up(const std::string& why);
   void plan_inline();
   void keep_secondaries(PassRecording& pass, std::span<const std::uint32_t> chunks, vk::Buffer predicates);
@@ -82,7 +86,9 @@ class CachedOctree : public Strategy {
   View view_;
   std::uint32_t objects_per_node_ = 0;
   OctreeCounters found_;
-  std::uint32_t passes_ = 0;  // drawn since the plan
+  double changed_share_ = 0;
+  std::size_t changed_ = 0, moved_ = 0;  // in the last update
+  std::uint32_t passes_ = 0;             // drawn since the plan
   bool indirect_form_ = false;
   std::optional<SceneOctree> octree_;
   std::optional<CommandCache> cache_;

@@ -11,6 +11,12 @@ class Inline final : public ListStrategy {
     list_in_frustum(scene_, cull_planes(frustum_of(view.clip_from_world), scene_.bounds_m()), list_);
     finish_plan(view);
   }
+  [[nodiscard]] model::FrameFacts facts() const override {
+    model::FrameFacts facts = ListStrategy::facts();
+    facts.in_frustum = load();
+    facts.exact_inline = true;
+    return facts;
+  }
 };
 
 }  // namespace

@@ -3,10 +3,17 @@
 #include <algorithm>
 
 #include "render/passes/pass_recording.h"
+#include "render/strategy/estimate_load.h"
 
 namespace scenegen::render {
 
+void ListStrategy::update(const timeline::ChangeSet& changes) {
+  changed_ = changes.count();
+  moved_ = changes.moved.size();
+}
+
 void ListStrategy::finish_plan(const View& view) {
+  view_ = view;
   if (options_.reversed) std::reverse(list_.solid.begin(), list_.solid.end());
   sort_back_to_front(scene_, view, list_.blended);
   counters_ = {};
@@ -21,6 +28,20 @@ void ListStrategy::draw_solid(PassRecording& pass) {
 
 void ListStrategy::draw_blended(DrawRecorder& recorder) {
   for (const std::uint32_t slot : list_.blended) recorder.draw(slot);
+}
+
+model::Load ListStrategy::load() const {
+  return load_of_slots(scene_, list_.solid, ScreenArea(view_, size_));
+}
+
+model::FrameFacts ListStrategy::facts() const {
+  model::FrameFacts facts;
+  const ScreenArea screen(view_, size_);
+  add_scene_facts(scene_, screen, facts);
+  facts.changed = static_cast<double>(changed_);
+  facts.moved = static_cast<double>(moved_);
+  facts.blended = load_of_slots(scene_, list_.blended, screen);
+  return facts;
 }
 
 }  // namespace scenegen::render

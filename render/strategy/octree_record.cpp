@@ -1,6 +1,7 @@
 // The dissertation's baseline "Frustum Culling": chunks of the octree are culled, and what is left of them is
 // recorded each frame.
 #include "render/spatial/scene_octree.h"
+#include "render/strategy/estimate_load.h"
 #include "render/strategy/list_strategy.h"
 #include "render/strategy/octree_choice.h"
 
@@ -12,7 +13,10 @@ class OctreeRecord final : public ListStrategy {
   OctreeRecord(const StrategyContext& context, std::uint32_t objects_per_node)
       : ListStrategy(context), octree_(context.scene, objects_per_node) {}
 
-  void update(const timeline::ChangeSet& changes) override { octree_.update(changes); }
+  void update(const timeline::ChangeSet& changes) override {
+    ListStrategy::update(changes);
+    octree_.update(changes);
+  }
 
   void plan(const View& view) override {
     const CullPlanes planes = cull_planes(frustum_of(view.clip_from_world), scene_.bounds_m());
@@ -31,12 +35,27 @@ class OctreeRecord final : public ListStrategy {
     list_.tested += found.tests;
     finish_plan(view);
     counters_.nodes = found.nodes;
+    boxes_tested_ = found.tests;
+  }
+
+  [[nodiscard]] model::FrameFacts facts() const override {
+    model::FrameFacts facts = ListStrategy::facts();
+    const Octree& tree = octree_.tree();
+    facts.height = model::octree_height(tree.root().content.slots, tree.slots_per_node());
+    facts.nodes_visited = static_cast<double>(counters_.nodes);
+    facts.boxes_tested = static_cast<double>(boxes_tested_);
+    facts.chunks = static_cast<double>(chunks_.size());
+    facts.in_chunks = load_of_chunks(scene_, tree, chunks_, ScreenArea(view_, size_));
+    // Nothing is kept: what keeping would have recorded is not known.
+    facts.exact_octree = true;
+    return facts;
   }
 
  private:
   SceneOctree octree_;
   std::vector<std::uint32_t> chunks_;
   std::vector<std::uint64_t> inside_;
+  std::uint64_t boxes_tested_ = 0;
 };
 
 }  // namespace

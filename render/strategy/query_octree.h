@@ -3,27 +3,12 @@
 
 #include <array>
 #include <memory>
-#include <vector>
 
-#include "render/passes/occlusion.h"
 #include "render/spatial/query_box.h"
 #include "render/strategy/cached_octree.h"
+#include "render/strategy/query_plan.h"
 
 namespace scenegen::render {
-
-/// What to draw and to ask in a pass.
-struct QueryPlan {
-  std::vector<std::uint32_t> first;   ///< chunks to draw whatever the answers are
-  std::vector<std::uint32_t> second;  ///< chunks believed hidden, each governed by one of `asked`
-  std::vector<Asked> asked;
-  std::vector<Governed> governed;  ///< as `second`, with the query
-  void clear() {
-    first.clear();
-    second.clear();
-    asked.clear();
-    governed.clear();
-  }
-};
 
 /// Exact, unlike the dissertation: what is believed hidden is drawn in a second part of the pass, under
 /// predicates that this frame's own queries set, so nothing is ever missing and nobody waits for a result.

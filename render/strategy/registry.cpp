@@ -8,17 +8,23 @@ namespace scenegen::render {
 
 std::unique_ptr<Strategy> make_brute(const StrategyContext& context);
 std::unique_ptr<Strategy> make_inline(const StrategyContext& context);
+std::unique_ptr<Strategy> make_inline_queries(const StrategyContext& context);
 std::unique_ptr<Strategy> make_octree_record(const StrategyContext& context);
 std::unique_ptr<Strategy> make_octree(const StrategyContext& context);
+std::unique_ptr<Strategy> make_queries(const StrategyContext& context);
 std::unique_ptr<Strategy> make_queries_all(const StrategyContext& context);
 
 std::span<const StrategyEntry> strategies() {
   static constexpr std::array kEntries{
       StrategyEntry{"brute", "every object that is visible by timeline; the reference", &make_brute},
       StrategyEntry{"inline", "frustum culling of every object, commands recorded each frame", &make_inline},
+      StrategyEntry{"inline-queries",
+                    "the same, with an occlusion query for every object; may draw it some frames too late",
+                    &make_inline_queries},
       StrategyEntry{"octree-record", "octree culling, commands recorded each frame", &make_octree_record},
       StrategyEntry{"octree", "octree culling, commands of each node kept", &make_octree},
       StrategyEntry{"queries-all", "the same, with an occlusion query for every node", &make_queries_all},
+      StrategyEntry{"queries", "the same, with as many occlusion queries as pay", &make_queries},
   };
   return kEntries;
 }

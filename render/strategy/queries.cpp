@@ -1,0 +1,39 @@
+// D method 3: occlusion queries where they pay, as many as pay (D 3.2).
+#include "render/strategy/query_chooser.h"
+#include "render/strategy/query_octree.h"
+
+namespace scenegen::render {
+namespace {
+
+// Weight of a frame in alpha_n, a mean over the last ones.
+constexpr double kNewest = 0.1;
+
+class Queries final : public QueryOctree {
+ public:
+  explicit Queries(const StrategyContext& context) : QueryOctree(context) {
+    const QueryChooser::Settings settings{exact(), indirect(), context.frames_in_flight > 1};
+    for (std::size_t kind = 0; kind < kKinds; ++kind) choosers_.emplace_back(settings);
+  }
+
+ private:
+  void learn(Kind kind, const Occlusion::Answers& answers) override {
+    choosers_[kind].learn(answers.asked, answers.samples);
+  }
+
+  void choose(Kind kind, const QueryBoxes& boxes, QueryPlan& plan) override {
+    rerecorded_share_ += kNewest * (changed_share() - rerecorded_share_);
+    const ScreenArea screen(view(), context_.size);
+    choosers_[kind].choose({tree(), visits_, chunks_, boxes, screen, context_.costs, rerecorded_share_}, plan);
+  }
+
+  std::vector<QueryChooser> choosers_;  // by kind of pass
+  double rerecorded_share_ = 0;         // alpha_n
+};
+
+}  // namespace
+
+std::unique_ptr<Strategy> make_queries(const StrategyContext& context) {
+  return std::make_unique<Queries>(context);
+}
+
+}  // namespace scenegen::render

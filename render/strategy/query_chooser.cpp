@@ -1,0 +1,393 @@
+#include "render/strategy/query_chooser.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace scenegen::render {
+namespace {
+
+// A part is heavy when drawing it costs so many times what asking does: C of (3.5).
+constexpr double kHeavy = 1.5;
+// Parts never asked before that may be asked in a frame.
+constexpr std::size_t kGatheredAtOnce = 64;
+// So many answers say enough for a fit.
+constexpr double kGatherEnough = 2048;
+// Or so many times what is left to ask.
+constexpr double kGatherMost = 4;
+// Frames after which a part that was visible may be asked again; doubled each time.
+constexpr std::uint32_t kFirstWait = 8;
+constexpr std::uint32_t kLongestWait = 256;
+// What was out of the frustum for so long is not known any more.
+constexpr std::uint32_t kForget = 64;
+// Asking about what may be visible wastes queries: a share of those about hidden parts, and some always.
+constexpr std::size_t kAgainShare = 8, kAgainLeast = 2;
+constexpr std::size_t kJoinedShare = 2, kJoinedLeast = 8;
+// Observations that are fitted.
+constexpr std::size_t kWindow = 256;
+// Frames in a row in which asking must not pay before it stops.
+constexpr std::uint32_t kPatience = 16;
+// Frames of resting, doubled each time; and what wakes it before: a change of all that is in the frustum.
+constexpr std::uint32_t kFirstRest = 128, kLongestRest = 2048;
+constexpr double kWakeChange = 0.5;
+// Answers are late by the frames in flight.
+constexpr std::uint32_t kLateness = 4;
+
+}  // namespace
+
+QueryChooser::Part& QueryChooser::part_of(std::uint32_t key) {
+  return (key & kNodeBit) != 0 ? nodes_[key & ~kNodeBit] : chunks_[key];
+}
+
+QueryChooser::Part& QueryChooser::visit_part(std::uint32_t key, std::uint32_t owner, std::uint64_t revision) {
+  Part& part = part_of(key);
+  // Exact: a verdict is checked in the frame in which it is used, so it may outlive changes in its place. Late:
+  // nothing but the verdict keeps what appeared from being drawn.
+  const bool stale = settings_.exact ? part.owner != owner : part.revision != revision;
+  if (stale || part.age != epoch_ || frame_ - part.seen > kForget) {
+    part.verdict = Verdict::unknown;
+    part.wait = 0;
+    part.age = epoch_;
+  }
+  part.owner = owner;
+  part.revision = revision;
+  part.seen = frame_;
+  return part;
+}
+
+void QueryChooser::observe(const Sum& sum) {
+  if (window_.size() < kWindow) {
+    window_.push_back(sum);
+  } else {
+    window_[window_at_] = sum;
+  }
+  window_at_ = (window_at_ + 1) % kWindow;
+}
+
+void QueryChooser::learn(std::span<const Asked> asked, std::span<const std::uint32_t> samples) {
+  Sum sum;
+  double believed = 0;
+  double kept = 0;
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    Part& part = part_of(asked[i].number);
+    const bool hidden = samples[i] == 0;
+    if (asked[i].believed_hidden) {
+      believed += part.seconds;
+      kept += hidden ? part.seconds : 0.0;
+    }
+    sum.queries += 1;
+    sum.chunks += hidden ? part.chunks : 0;
+    sum.draws += hidden ? part.draws : 0;
+    sum.seconds += hidden ? part.seconds : 0;
+    const bool power_of_two = ((i + 1) & i) == 0;
+    if (phase_ == Phase::asking && (power_of_two || i + 1 == asked.size())) observe(sum);
+    if (!settings_.exact && part.revision != asked[i].revision) continue;
+    part.age = epoch_;
+    if (hidden) {
+      part.verdict = Verdict::hidden;
+      part.wait = 0;
+    } else {
+      part.verdict = Verdict::visible;
+      part.wait = std::clamp(2 * part.wait, kFirstWait, kLongestWait);
+      part.due = frame_ + part.wait + asked[i].number % (part.wait / 2);
+    }
+  }
+  if (believed > 0) kept_share_ += 0.1 * (kept / believed - kept_share_);
+  if (phase_ == Phase::gathering && !asked.empty()) {
+    gathered_.queries += sum.queries;
+    gathered_.chunks += sum.chunks;
+    gathered_.draws += sum.draws;
+    gathered_.seconds += sum.seconds;
+    observe(gathered_);
+  }
+}
+
+double QueryChooser::secondary_s(const Frame& frame, double draws) const {
+  return settings_.indirect ? frame.costs.node_command_s : frame.costs.secondary_s.line_at(draws);
+}
+
+/// What the device saves when it has not to draw this: its commands and vertices, or its fragments, which fail
+/// the depth test, since it is hidden.
+double QueryChooser::seconds_of(const Frame& frame, const Octree::Content& content) const {
+  const model::UnitCosts& c = frame.costs;
+  const model::Curve& curve = c.draw_s[static_cast<std::size_t>(model::Shading::plain)];
+  const double draws = std::max(1U, content.slots);
+  double draw_s = curve.line_at(static_cast<double>(content.vertices) / draws);
+  if (settings_.indirect) {
+    draw_s += c.indirect_draw_s - curve.line_at(0);
+  } else if (settings_.exact) {
+    draw_s -= c.skipped_draw_s;
+  }
+  double seconds = std::max({0.0, draws * draw_s, frame.screen.fragments(content) * c.hidden_fragment_s});
+  if (!settings_.exact) seconds += settings_.indirect ? c.node_command_device_s : c.secondary_device_s;
+  return seconds;
+}
+
+void QueryChooser::measure(const Frame& frame) {
+  nodes_.resize(std::max(nodes_.size(), frame.tree.node_numbers()));
+  chunks_.resize(std::max(chunks_.size(), frame.tree.chunk_numbers()));
+  seconds_of_chunk_.resize(chunks_.size());
+  seconds_.resize(frame.chunks.size() + 1);
+  draws_.resize(frame.chunks.size() + 1);
+  for (std::size_t i = 0; i < frame.chunks.size(); ++i) {
+    const std::uint32_t number = frame.chunks[i];
+    const Octree::Chunk& chunk = frame.tree.chunk(number);
+    const Part& before = chunks_[number];
+    // Fragments change slowly with the view: an eighth of the chunks is looked at in each frame.
+    if (before.revision != chunk.revision || before.seen + 1 != frame_ || (number + frame_) % 8 == 0)
+      seconds_of_chunk_[number] = static_cast<float>(seconds_of(frame, chunk.content));
+    visit_part(number, chunk.node, chunk.revision);
+    seconds_[i + 1] = seconds_[i] + seconds_of_chunk_[number];
+    draws_[i + 1] = draws_[i] + chunk.content.slots;
+  }
+}
+
+void QueryChooser::summarize(const Frame& frame) {
+  below_.assign(frame.visits.size(), {});
+  for (std::size_t v = frame.visits.size(); v-- > 0;) {  // what is below comes first
+    const OctreeVisit& visit = frame.visits[v];
+    Below& sum = below_[v];
+    for (std::uint32_t i = visit.first_chunk; i < visit.own_end; ++i) {
+      const Verdict verdict = chunks_[frame.chunks[i]].verdict;
+      sum.box_m.add(frame.tree.chunk(frame.chunks[i]).content.box_m);
+      sum.hidden = sum.hidden && verdict == Verdict::hidden;
+      sum.known = sum.known || verdict != Verdict::unknown;
+      sum.visible = sum.visible || verdict == Verdict::visible;
+    }
+    for (std::size_t child = v + 1; child < visit.end_visit; child = frame.visits[child].end_visit) {
+      const Below& part = below_[child];
+      if (part.box_m.empty()) continue;
+      sum.box_m.add(part.box_m);
+      sum.hidden = sum.hidden && part.hidden;
+      sum.known = sum.known || part.known;
+      sum.visible = sum.visible || part.visible;
+    }
+    if (visit.end_chunk - visit.first_chunk < 2) continue;  // a node that is one chunk is asked as that
+    const Octree::Node& node = frame.tree.node(visit.node);
+    const Verdict own = visit_part(visit.node | kNodeBit, node.parent, node.revision).verdict;
+    sum.known = sum.known || own != Verdict::unknown;
+    if (own == Verdict::hidden) {
+      sum.hidden = true;
+      sum.visible = false;
+    }
+  }
+}
+
+bool QueryChooser::heavy(const Frame& frame, std::uint32_t first, std::uint32_t end) const {
+  const double chunks = end - first;
+  const double draws = draws_[end] - draws_[first];
+  model::NodeCosts node;
+  if (!settings_.exact) node.secondary_s = chunks * secondary_s(frame, draws / chunks);
+  node.vertices_s = seconds_[end] - seconds_[first];
+  return model::heavy(node, {frame.costs.ask_s, frame.costs.query_s, frame.costs.receive_s}, kHeavy,
+                      settings_.side_by_side);
+}
+
+bool QueryChooser::make_candidate(const Frame& frame, std::uint32_t key, std::uint32_t first,
+                                  std::uint32_t end, const Box& box_m, Candidate& out) const {
+  const Box grown = frame.boxes.grown(box_m);
+  if (frame.boxes.touches_eye(grown)) return false;
+  out = {key, first, end, 0, 0, seconds_[end] - seconds_[first], grown};
+  return true;
+}
+
+void QueryChooser::collect_chunk(const Frame& frame, std::uint32_t index, std::uint32_t level) {
+  const std::uint32_t number = frame.chunks[index];
+  const Part& part = chunks_[number];
+  if (part.verdict == Verdict::visible && part.due > frame_) return;
+  if (!heavy(frame, index, index + 1)) return;
+  Candidate candidate;
+  if (!make_candidate(frame, number, index, index + 1, frame.tree.chunk(number).content.box_m, candidate))
+    return;
+  candidate.level = level;
+  std::vector<Candidate>& list = part.verdict == Verdict::hidden    ? hidden_
+                                 : part.verdict == Verdict::unknown ? unknown_
+                                                                    : again_;
+  candidate.rank = static_cast<std::uint32_t>(list.size());
+  list.push_back(candidate);
+}
+
+void QueryChooser::collect(const Frame& frame, std::uint32_t v) {
+  const OctreeVisit& visit = frame.visits[v];
+  if (visit.first_chunk == visit.end_chunk || !heavy(frame, visit.first_chunk, visit.end_chunk)) return;
+  const Below& below = below_[v];
+  const std::uint32_t level = frame.tree.node(visit.node).level;
+  if (visit.end_chunk - visit.first_chunk > 1) {
+    const std::uint32_t key = visit.node | kNodeBit;
+    const Part& part = nodes_[visit.node];
+    Candidate candidate;
+    const bool asks = part.verdict == Verdict::hidden || !below.known ||
+                      (below.hidden && (part.verdict == Verdict::unknown || part.due <= frame_));
+    if (asks && make_candidate(frame, key, visit.first_chunk, visit.end_chunk, below.box_m, candidate)) {
+      candidate.level = level;
+      std::vector<Candidate>& list = part.verdict == Verdict::hidden ? hidden_
+                                     : below.known                   ? joined_
+                                                                     : unknown_;
+      candidate.rank = static_cast<std::uint32_t>(list.size());
+      list.push_back(candidate);
+      if (part.verdict == Verdict::hidden || !below.known) return;
+    }
+  }
+  for (std::uint32_t i = visit.first_chunk; i < visit.own_end; ++i) collect_chunk(frame, i, level);
+  for (std::uint32_t child = v + 1; child < visit.end_visit; child = frame.visits[child].end_visit)
+    collect(frame, child);
+}
+
+void QueryChooser::ask(const Candidate& candidate, bool hidden, QueryPlan& plan) {
+  const auto query = static_cast<std::uint32_t>(plan.asked.size());
+  Part& part = part_of(candidate.part);
+  part.seconds = static_cast<float>(candidate.seconds);
+  part.draws = static_cast<float>(draws_[candidate.end] - draws_[candidate.first]);
+  part.chunks = static_cast<float>(candidate.end - candidate.first);
+  plan.asked.push_back({candidate.part, part.revision, hidden, candidate.box_m});
+  last_asked_ = frame_;
+  if (!hidden) return;
+  for (std::uint32_t i = candidate.first; i < candidate.end; ++i) query_of_[i] = query;
+}
+
+void QueryChooser::ask_some(std::vector<Candidate>& candidates, std::size_t most, QueryPlan& plan) {
+  // Breadth-first; in a level what saves most.
+  const auto before = [](const Candidate& a, const Candidate& b) {
+    if (a.level != b.level) return a.level < b.level;
+    return a.seconds != b.seconds ? a.seconds > b.seconds : a.rank < b.rank;
+  };
+  if (candidates.size() > most) {
+    std::nth_element(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(most),
+                     candidates.end(), before);
+    candidates.resize(most);
+  }
+  std::sort(candidates.begin(), candidates.end(), before);
+  for (const Candidate& candidate : candidates) ask(candidate, false, plan);
+}
+
+void QueryChooser::begin_gathering() {
+  phase_ = Phase::gathering;
+  ++epoch_;
+  gathered_ = {};
+  window_.clear();
+  window_at_ = 0;
+  kept_share_ = 1;
+  useless_ = 0;
+}
+
+void QueryChooser::begin_resting() {
+  phase_ = Phase::resting;
+  rest_ = std::clamp(2 * rest_, kFirstRest, kLongestRest);
+  wake_ = frame_ + rest_;
+  seconds_at_rest_ = seconds_.back();
+  best_ = 0;
+}
+
+model::QueryProblem QueryChooser::problem(const Frame& frame) const {
+  const model::UnitCosts& c = frame.costs;
+  model::QueryProblem p;
+  p.all_objects = draws_.back();
+  p.all_nodes = static_cast<double>(frame.chunks.size());
+  p.all_elements = seconds_.back();
+  p.element_s = 1.0;  // elements are seconds of the device already
+  p.rerecorded_share = frame.rerecorded_share;
+  p.record_s = settings_.indirect ? c.write_indirect_s : c.record_kept_s;
+  p.secondary_s = secondary_s(frame, p.all_objects / std::max(1.0, p.all_nodes));
+  p.ask_s = c.ask_s + c.receive_s;
+  p.query_s = c.query_s;
+  p.exact = settings_.exact;
+  p.second_part_s = c.second_part_device_s + (settings_.side_by_side ? 0.0 : c.second_part_cpu_s);
+  // What else the frame costs decides which of processor and device waits for the other.
+  p.other_cpu_s = c.empty_cpu_s + p.all_nodes * (c.visit_node_s + 2.0 * c.cull_node_s);
+  p.other_gpu_s = c.empty_device_s + p.all_nodes * (settings_.indirect ? c.node_command_device_s : c.secondary_device_s);
+  return p;
+}
+
+/// How many of hidden_, best first, to ask about: D's x* by the fit, but also what the present answers
+/// themselves say of that number, of none and of all, since they are known and a logarithm is only near.
+std::size_t QueryChooser::decide(const Frame& frame) {
+  std::sort(hidden_.begin(), hidden_.end(), [](const Candidate& a, const Candidate& b) {
+    return a.seconds != b.seconds ? a.seconds > b.seconds : a.rank < b.rank;
+  });
+  curve_.assign(1, {});
+  for (const Candidate& c : hidden_) {
+    const Sum& sum = curve_.back();
+    curve_.push_back({sum.queries + 1, sum.chunks + (c.end - c.first),
+                      sum.draws + draws_[c.end] - draws_[c.first], sum.seconds + c.seconds});
+  }
+  model::QueryProblem p = problem(frame);
+  const auto fit = [&](double Sum::*hidden) {
+    points_.clear();
+    for (const Sum& sum : window_) points_.push_back({sum.queries, sum.*hidden});
+    return model::fit_log(points_);
+  };
+  p.nodes = fit(&Sum::chunks);
+  p.objects = fit(&Sum::draws);
+  p.elements = fit(&Sum::seconds);
+  const double fitted = model::best_queries(p, settings_.side_by_side);
+  const auto known = [&](std::size_t x) {
+    p.nodes = {kept_share_ * curve_[x].chunks, 0};
+    p.objects = {kept_share_ * curve_[x].draws, 0};
+    p.elements = {kept_share_ * curve_[x].seconds, 0};
+    return model::query_time_s(p, static_cast<double>(x), settings_.side_by_side);
+  };
+  std::size_t best = 0;
+  for (const std::size_t x : {std::min(hidden_.size(), static_cast<std::size_t>(std::lround(fitted))),
+                              hidden_.size()}) {
+    if (known(x) < known(best)) best = x;
+  }
+  best_ = static_cast<double>(best);
+  return best;
+}
+
+void QueryChooser::gather(const Frame& frame, QueryPlan& plan) {
+  ask_some(unknown_, kGatheredAtOnce, plan);
+  // With a camera that moves there is always something new: most of it is enough to begin with.
+  const bool most_asked = static_cast<double>(plan.asked.size()) * kGatherMost <= gathered_.queries;
+  const bool all_asked = plan.asked.empty() && frame_ > last_asked_ + kLateness;
+  if (!most_asked && gathered_.queries < kGatherEnough) return;
+  if (decide(frame) > 0) {
+    phase_ = Phase::asking;
+    rest_ = 0;
+  } else if (all_asked || gathered_.queries >= kGatherEnough) {
+    begin_resting();
+  }
+}
+
+void QueryChooser::ask_best(const Frame& frame, QueryPlan& plan) {
+  std::size_t most = decide(frame);
+  if (most == 0) {
+    if (++useless_ > kPatience) return begin_resting();
+    most = hidden_.size();
+  } else {
+    useless_ = 0;
+  }
+  for (std::size_t i = 0; i < most; ++i) ask(hidden_[i], true, plan);
+  ask_some(joined_, std::max(kJoinedLeast, most / kJoinedShare), plan);
+  ask_some(again_, std::max(kAgainLeast, most / kAgainShare), plan);
+  ask_some(unknown_, kGatheredAtOnce, plan);
+}
+
+void QueryChooser::choose(const Frame& frame, QueryPlan& plan) {
+  ++frame_;
+  if (frame.chunks.empty()) return;
+  measure(frame);
+  query_of_.assign(frame.chunks.size(), kNone);
+  if (phase_ == Phase::resting) {
+    const double change = std::abs(seconds_.back() - seconds_at_rest_);
+    if (frame_ >= wake_ || change > kWakeChange * seconds_at_rest_) {
+      begin_gathering();
+      measure(frame);  // with nothing known
+    }
+  }
+  if (phase_ != Phase::resting) {
+    summarize(frame);
+    for (std::vector<Candidate>* list : {&hidden_, &unknown_, &joined_, &again_}) list->clear();
+    collect(frame, 0);
+    phase_ == Phase::gathering ? gather(frame, plan) : ask_best(frame, plan);
+  }
+  for (std::uint32_t i = 0; i < frame.chunks.size(); ++i) {
+    if (query_of_[i] == kNone) {
+      plan.first.push_back(frame.chunks[i]);
+    } else {
+      plan.second.push_back(frame.chunks[i]);
+      plan.governed.push_back({query_of_[i], frame.chunks[i]});
+    }
+  }
+}
+
+}  // namespace scenegen::render

@@ -1,0 +1,138 @@
+// Which parts of an octree to ask about in a pass, from the answers so far (D 3.2): processor code only.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "render/model/queries.h"
+#include "render/model/unit_costs.h"
+#include "render/spatial/octree.h"
+#include "render/spatial/query_box.h"
+#include "render/strategy/estimate_load.h"
+#include "render/strategy/query_plan.h"
+
+namespace scenegen::render {
+
+/// Asks about *parts*: a chunk, or all chunks in the frustum below a node, by one box round them. A part that
+/// is believed hidden governs its chunks and is asked in every frame in which it is not drawn; two parts whose
+/// parent holds nothing else become one when the parent is found hidden too, and a parent that comes into view
+/// falls apart into what was known of its parts. Parts that were visible are asked again after a wait that
+/// doubles each time, spread over frames; everything depends on the answers and the frames' count alone.
+///
+/// Three phases. *Gathering*: heavy parts (3.5) that were never asked are, largest first, some in each frame;
+/// everything is drawn. Then hidden(x) is fitted and x* asked for; if that is 0, *resting*: nothing is asked
+/// until the view has changed much or some time has passed. Else *asking*, fitted anew in each frame.
+class QueryChooser {
+ public:
+  struct Settings {
+    bool exact = true;     ///< what is believed hidden is sent all the same, under a predicate
+    bool indirect = true;  ///< chunks are indirect draws
+    bool side_by_side = true;  ///< processor and device work at once
+  };
+  /// A frame; `visits` and `chunks` are what Octree::cull() found.
+  struct Frame {
+    const Octree& tree;
+    std::span<const OctreeVisit> visits;
+    std::span<const std::uint32_t> chunks;
+    const QueryBoxes& boxes;
+    const ScreenArea& screen;
+    const model::UnitCosts& costs;
+    double rerecorded_share = 0;  ///< alpha_n
+  };
+  enum class Phase : std::uint8_t { gathering, asking, resting };
+
+  explicit QueryChooser(const Settings& settings) : settings_(settings) {}
+  /// Results (0: hidden) of what a plan of some frames ago asked.
+  void learn(std::span<const Asked> asked, std::span<const std::uint32_t> samples);
+  /// Fills an empty plan.
+  void choose(const Frame& frame, QueryPlan& plan);
+
+  [[nodiscard]] Phase phase() const { return phase_; }
+  /// x* of the last frame: how many hidden parts it pays to ask about.
+  [[nodiscard]] double best() const { return best_; }
+
+ private:
+  enum class Verdict : std::uint8_t { unknown, visible, hidden };
+  /// What is known of a chunk or a node.
+  struct Part {
+    std::uint64_t revision = 0;  // of what the verdict is about
+    std::uint32_t owner = 0xFFFFFFFFU;
+    std::uint32_t due = 0;   // frame from which on it may be asked again when visible
+    std::uint32_t wait = 0;  // frames
+    std::uint32_t age = 0;   // epoch of the verdict
+    std::uint32_t seen = 0;  // last frame in the frustum
+    Verdict verdict = Verdict::unknown;
+    // When it was asked:
+    float seconds = 0, draws = 0, chunks = 0;  // that hiding it saves
+  };
+  /// A part that could be asked now.
+  struct Candidate {
+    std::uint32_t part = 0;        // kNodeBit and a number
+    std::uint32_t first = 0, end = 0;  // of the frame's chunks
+    std::uint32_t level = 0;
+    std::uint32_t rank = 0;  // order of the walk
+    double seconds = 0;
+    Box box_m;  // grown
+  };
+  /// What a walk finds of everything below a visit.
+  struct Below {
+    Box box_m;
+    bool hidden = true;  // every part is
+    bool known = false;  // some part has a verdict
+    bool visible = false;  // some part was visible
+  };
+  /// Sums over parts asked.
+  struct Sum {
+    double queries = 0, chunks = 0, draws = 0, seconds = 0;
+  };
+
+  [[nodiscard]] Part& part_of(std::uint32_t key);
+  Part& visit_part(std::uint32_t key, std::uint32_t owner, std::uint64_t revision);
+  void measure(const Frame& frame);
+  void summarize(const Frame& frame);
+  void collect(const Frame& frame, std::uint32_t visit);
+  void collect_chunk(const Frame& frame, std::uint32_t index, std::uint32_t level);
+  [[nodiscard]] bool make_candidate(const Frame& frame, std::uint32_t key, std::uint32_t first,
+                                    std::uint32_t end, const Box& box_m, Candidate& out) const;
+  [[nodiscard]] bool heavy(const Frame& frame, std::uint32_t first, std::uint32_t end) const;
+  [[nodiscard]] double seconds_of(const Frame& frame, const Octree::Content& content) const;
+  [[nodiscard]] double secondary_s(const Frame& frame, double draws) const;
+  [[nodiscard]] model::QueryProblem problem(const Frame& frame) const;
+  [[nodiscard]] std::size_t decide(const Frame& frame);
+  void begin_gathering();
+  void begin_resting();
+  void gather(const Frame& frame, QueryPlan& plan);
+  void ask_best(const Frame& frame, QueryPlan& plan);
+  void ask(const Candidate& candidate, bool hidden, QueryPlan& plan);
+  void ask_some(std::vector<Candidate>& candidates, std::size_t most, QueryPlan& plan);
+  void observe(const Sum& sum);
+
+  static constexpr std::uint32_t kNodeBit = 0x80000000U;
+  static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+
+  Settings settings_;
+  Phase phase_ = Phase::gathering;
+  std::vector<Part> nodes_, chunks_;
+  std::uint32_t frame_ = 0, epoch_ = 1;
+
+  // Of the frame.
+  std::vector<double> seconds_, draws_;  // sums before each of the frame's chunks
+  std::vector<float> seconds_of_chunk_;  // by number, from some frames ago
+  std::vector<Below> below_;             // by visit
+  std::vector<Candidate> hidden_, unknown_, joined_, again_;
+  std::vector<std::uint32_t> query_of_;  // by index of the frame's chunks
+
+  // Statistics.
+  Sum gathered_;
+  std::vector<Sum> window_;  // a ring
+  std::size_t window_at_ = 0;
+  std::vector<model::Observation> points_;  // scratch
+  std::vector<Sum> curve_;                  // of hidden_, sorted: the first i of them
+  double kept_share_ = 1;  // of what was believed hidden, found so again
+  double best_ = 0;
+  std::uint32_t last_asked_ = 0, useless_ = 0, wake_ = 0, rest_ = 0;
+  double seconds_at_rest_ = 0;
+};
+
+}  // namespace scenegen::render

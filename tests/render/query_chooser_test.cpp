@@ -1,0 +1,181 @@
+// Which parts of an octree are asked about, against a world in which a wall hides what lies behind it.
+#include "render/strategy/query_chooser.h"
+
+#include <catch2/catch.hpp>
+#include <deque>
+#include <set>
+
+#include "scene/random.h"
+
+using namespace scenegen;
+using namespace scenegen::render;
+
+namespace {
+
+constexpr glm::uvec2 kSize{800, 600};
+constexpr std::uint32_t kSlots = 20'000;
+
+/// Boxes in a cube of 100 m; what lies wholly behind `wall_z_m` is hidden.
+class World {
+ public:
+  explicit World(const QueryChooser::Settings& settings, const model::UnitCosts& costs)
+      : costs_(costs), chooser(settings) {
+    const Random random(4, "query chooser");
+    boxes_.resize(kSlots);
+    Octree::Options options;
+    options.root_m = {{-50, -50, -100}, {50, 50, 0}};
+    options.slots = kSlots;
+    options.slots_per_node = 50;
+    for (std::uint32_t i = 0; i < kSlots; ++i) {
+      const auto unit = [&](std::uint64_t k) { return random.unit(8 * i + k); };
+      const glm::vec3 at(100 * unit(0) - 50, 100 * unit(1) - 50, -100 * unit(2));
+      boxes_.set(i, {at - 0.4F, at + 0.4F});
+    }
+    tree.emplace(
+        boxes_, [](std::uint32_t) { return 36U; }, options);
+    for (std::uint32_t i = 0; i < kSlots; ++i) tree->insert(i);
+    tree->refresh();
+  }
+
+  /// One frame; answers come two frames later.
+  void frame() {
+    chunks.clear();
+    visits_.clear();
+    OctreeCounters found;
+    tree->cull(cull_planes(frustum_of(view_.clip_from_world), tree->root().content.box_m), view_.eye_m(),
+               chunks, found, &visits_);
+    answered = hidden_answers = 0;
+    if (asked_.size() == 2) {
+      chooser.learn(asked_.front().first, asked_.front().second);
+      answered = asked_.front().second.size();
+      for (const std::uint32_t samples : asked_.front().second) hidden_answers += samples == 0 ? 1 : 0;
+      asked_.pop_front();
+    }
+    plan.clear();
+    const QueryBoxes boxes(view_, kSize);
+    const ScreenArea screen(view_, kSize);
+    chooser.choose({*tree, visits_, chunks, boxes, screen, costs_, 0.0}, plan);
+    check_plan(boxes);
+    auto& [asked, samples] = asked_.emplace_back();
+    asked = plan.asked;
+    for (const Asked& a : plan.asked) samples.push_back(a.box_m.hi.z < wall_z_m ? 0 : 7);
+  }
+
+  [[nodiscard]] std::size_t truly_hidden() const {
+    std::size_t sum = 0;
+    for (const std::uint32_t c : chunks) sum += tree->chunk(c).content.box_m.hi.z < wall_z_m - 0.5F ? 1 : 0;
+    return sum;
+  }
+
+ private:
+  View view_ = make_view(look_at({0, 0, 60}, {0, 0, 0}), {false, 1.2F, 1, 1, 0.1F, 0}, 4.0F / 3.0F);
+  model::UnitCosts costs_;
+  SlotBoxes boxes_;
+  std::vector<OctreeVisit> visits_;
+  std::deque<std::pair<std::vector<Asked>, std::vector<std::uint32_t>>> asked_;
+
+  /// Every chunk is drawn once, first or governed by a box round it that can be asked about.
+  void check_plan(const QueryBoxes& boxes) const {
+    std::set<std::uint32_t> all(plan.first.begin(), plan.first.end());
+    REQUIRE(plan.governed.size() == plan.second.size());
+    for (std::size_t i = 0; i < plan.second.size(); ++i) {
+      REQUIRE(all.insert(plan.second[i]).second);
+      REQUIRE(plan.governed[i].chunk == plan.second[i]);
+      const Asked& asked = plan.asked.at(plan.governed[i].query);
+      REQUIRE(asked.believed_hidden);
+      const Box box = boxes.grown(tree->chunk(plan.second[i]).content.box_m);
+      REQUIRE(glm::all(glm::lessThanEqual(asked.box_m.lo, box.lo)));
+      REQUIRE(glm::all(glm::greaterThanEqual(asked.box_m.hi, box.hi)));
+    }
+    REQUIRE(all == std::set<std::uint32_t>(chunks.begin(), chunks.end()));
+    for (const Asked& asked : plan.asked) REQUIRE_FALSE(boxes.touches_eye(asked.box_m));
+  }
+
+ public:
+  QueryChooser chooser;
+  std::optional<Octree> tree;
+  std::vector<std::uint32_t> chunks;
+  QueryPlan plan;
+  float wall_z_m = -20;
+  std::size_t answered = 0, hidden_answers = 0;
+};
+
+struct Totals {
+  std::size_t queries = 0, answered = 0, hidden_answers = 0;
+};
+Totals run(World& world, int frames) {
+  Totals totals;
+  for (int i = 0; i < frames; ++i) {
+    world.frame();
+    totals.queries += world.plan.asked.size();
+    totals.answered += world.answered;
+    totals.hidden_answers += world.hidden_answers;
+  }
+  return totals;
+}
+
+}  // namespace
+
+TEST_CASE("gathering finds what is hidden, and few queries then keep it from being drawn") {
+  for (const bool exact : {true, false}) {
+    for (const bool indirect : {true, false}) {
+      INFO("exact " << exact << ", indirect " << indirect);
+      World world({exact, indirect, true}, model::rough_costs(false));
+      world.frame();
+      CHECK(world.chooser.phase() == QueryChooser::Phase::gathering);
+      CHECK(world.plan.second.empty());
+      CHECK(world.plan.asked.size() <= 64);
+      run(world, 200);
+      REQUIRE(world.chooser.phase() == QueryChooser::Phase::asking);
+      CHECK(world.chooser.best() > 0);
+      // Nearly all of what could be skipped is, by queries about a tenth of the nodes, few of them for nothing.
+      // (A skipped draw in a secondary is not free: some chunks do not pay.)
+      CHECK(world.plan.second.size() >= world.truly_hidden() * (indirect || !exact ? 9 : 6) / 10);
+      const Totals totals = run(world, 100);
+      CHECK(static_cast<double>(totals.queries) <= 100 * 0.1 * static_cast<double>(world.tree->node_count()));
+      CHECK(static_cast<double>(totals.answered - totals.hidden_answers) <=
+            0.3 * static_cast<double>(totals.answered));
+    }
+  }
+}
+
+TEST_CASE("a wall that vanishes is noticed at once; one that comes back after a while") {
+  World world({true, true, true}, model::rough_costs(false));
+  run(world, 200);
+  REQUIRE(world.plan.second.size() > 100);
+  world.wall_z_m = -1000;
+  run(world, 60);
+  CHECK(world.plan.second.empty());
+  CHECK(world.chooser.phase() != QueryChooser::Phase::asking);
+  CHECK(world.plan.asked.size() < 10);
+  world.wall_z_m = -20;
+  run(world, 600);
+  CHECK(world.chooser.phase() == QueryChooser::Phase::asking);
+  CHECK(world.plan.second.size() > 100);
+}
+
+TEST_CASE("nothing is asked where asking costs more than drawing") {
+  model::UnitCosts costs = model::rough_costs(false);
+  costs.query_s = costs.ask_s = 1e-3;
+  World world({true, true, true}, costs);
+  const Totals totals = run(world, 100);
+  CHECK(totals.queries <= 20);  // the largest parts are heavy even so
+  CHECK(world.plan.second.empty());
+}
+
+TEST_CASE("where nothing is hidden, gathering ends in rest, and is tried again more and more rarely") {
+  World world({true, true, true}, model::rough_costs(false));
+  world.wall_z_m = -1000;
+  std::vector<int> begun;
+  bool resting = false;
+  for (int i = 0; i < 1200; ++i) {
+    world.frame();
+    const bool rests = world.chooser.phase() == QueryChooser::Phase::resting;
+    if (resting && !rests) begun.push_back(i);
+    if (rests) CHECK(world.plan.asked.empty());
+    resting = rests;
+  }
+  REQUIRE(begun.size() >= 2);
+  CHECK(begun.size() <= 4);
+  CHECK(begun[1] - begun[0] > begun[0]);
+}
