@@ -69,7 +69,7 @@ void add_drawing_options(Options& options, DrawingOptions& d, Value strategy, Va
               "samples a pixel");
   options.add("--shadows", on_off_value(d.shadows), "shadows of the sun");
   options.add("--strategy", std::move(strategy),
-              "way of drawing; all give the same pictures (docs/STRATEGIES.md)");
+              "way of drawing; all but inline-queries give the same pictures (docs/STRATEGIES.md)");
   options.add(
       "--octree-n", whole_value(d.octree_n, 0U, 100000U),
       "objects a node of the octree holds, and draws a kept command buffer; 0: the smallest from 200 on "

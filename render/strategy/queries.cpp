@@ -23,7 +23,8 @@ class Queries final : public QueryOctree {
   void choose(Kind kind, const QueryBoxes& boxes, QueryPlan& plan) override {
     rerecorded_share_ += kNewest * (changed_share() - rerecorded_share_);
     const ScreenArea screen(view(), context_.size);
-    choosers_[kind].choose({tree(), visits_, chunks_, boxes, screen, context_.costs, rerecorded_share_}, plan);
+    choosers_[kind].choose({tree(), visits_, chunks_, boxes, screen, context_.costs, rerecorded_share_},
+                           plan);
   }
 
   std::vector<QueryChooser> choosers_;  // by kind of pass

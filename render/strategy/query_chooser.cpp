@@ -40,8 +40,8 @@ QueryChooser::Part& QueryChooser::part_of(std::uint32_t key) {
 
 QueryChooser::Part& QueryChooser::visit_part(std::uint32_t key, std::uint32_t owner, std::uint64_t revision) {
   Part& part = part_of(key);
-  // Exact: a verdict is checked in the frame in which it is used, so it may outlive changes in its place. Late:
-  // nothing but the verdict keeps what appeared from being drawn.
+  // Exact: a verdict is checked in the frame in which it is used, so it may outlive changes in its place.
+  // Late: nothing but the verdict keeps what appeared from being drawn.
   const bool stale = settings_.exact ? part.owner != owner : part.revision != revision;
   if (stale || part.age != epoch_ || frame_ - part.seen > kForget) {
     part.verdict = Verdict::unknown;
@@ -105,8 +105,8 @@ double QueryChooser::secondary_s(const Frame& frame, double draws) const {
   return settings_.indirect ? frame.costs.node_command_s : frame.costs.secondary_s.line_at(draws);
 }
 
-/// What the device saves when it has not to draw this: its commands and vertices, or its fragments, which fail
-/// the depth test, since it is hidden.
+/// What the device saves when it has not to draw this: its commands and vertices, or its fragments, which
+/// fail the depth test, since it is hidden.
 double QueryChooser::seconds_of(const Frame& frame, const Octree::Content& content) const {
   const model::UnitCosts& c = frame.costs;
   const model::Curve& curve = c.draw_s[static_cast<std::size_t>(model::Shading::plain)];
@@ -293,7 +293,8 @@ model::QueryProblem QueryChooser::problem(const Frame& frame) const {
   p.second_part_s = c.second_part_device_s + (settings_.side_by_side ? 0.0 : c.second_part_cpu_s);
   // What else the frame costs decides which of processor and device waits for the other.
   p.other_cpu_s = c.empty_cpu_s + p.all_nodes * (c.visit_node_s + 2.0 * c.cull_node_s);
-  p.other_gpu_s = c.empty_device_s + p.all_nodes * (settings_.indirect ? c.node_command_device_s : c.secondary_device_s);
+  p.other_gpu_s =
+      c.empty_device_s + p.all_nodes * (settings_.indirect ? c.node_command_device_s : c.secondary_device_s);
   return p;
 }
 
@@ -326,8 +327,8 @@ std::size_t QueryChooser::decide(const Frame& frame) {
     return model::query_time_s(p, static_cast<double>(x), settings_.side_by_side);
   };
   std::size_t best = 0;
-  for (const std::size_t x : {std::min(hidden_.size(), static_cast<std::size_t>(std::lround(fitted))),
-                              hidden_.size()}) {
+  for (const std::size_t x :
+       {std::min(hidden_.size(), static_cast<std::size_t>(std::lround(fitted))), hidden_.size()}) {
     if (known(x) < known(best)) best = x;
   }
   best_ = static_cast<double>(best);

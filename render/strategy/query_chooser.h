@@ -15,10 +15,11 @@
 namespace scenegen::render {
 
 /// Asks about *parts*: a chunk, or all chunks in the frustum below a node, by one box round them. A part that
-/// is believed hidden governs its chunks and is asked in every frame in which it is not drawn; two parts whose
-/// parent holds nothing else become one when the parent is found hidden too, and a parent that comes into view
-/// falls apart into what was known of its parts. Parts that were visible are asked again after a wait that
-/// doubles each time, spread over frames; everything depends on the answers and the frames' count alone.
+/// is believed hidden governs its chunks and is asked in every frame in which it is not drawn; two parts
+/// whose parent holds nothing else become one when the parent is found hidden too, and a parent that comes
+/// into view falls apart into what was known of its parts. Parts that were visible are asked again after a
+/// wait that doubles each time, spread over frames; everything depends on the answers and the frames' count
+/// alone.
 ///
 /// Three phases. *Gathering*: heavy parts (3.5) that were never asked are, largest first, some in each frame;
 /// everything is drawn. Then hidden(x) is fitted and x* asked for; if that is 0, *resting*: nothing is asked
@@ -26,8 +27,8 @@ namespace scenegen::render {
 class QueryChooser {
  public:
   struct Settings {
-    bool exact = true;     ///< what is believed hidden is sent all the same, under a predicate
-    bool indirect = true;  ///< chunks are indirect draws
+    bool exact = true;         ///< what is believed hidden is sent all the same, under a predicate
+    bool indirect = true;      ///< chunks are indirect draws
     bool side_by_side = true;  ///< processor and device work at once
   };
   /// A frame; `visits` and `chunks` are what Octree::cull() found.
@@ -68,7 +69,7 @@ class QueryChooser {
   };
   /// A part that could be asked now.
   struct Candidate {
-    std::uint32_t part = 0;        // kNodeBit and a number
+    std::uint32_t part = 0;            // kNodeBit and a number
     std::uint32_t first = 0, end = 0;  // of the frame's chunks
     std::uint32_t level = 0;
     std::uint32_t rank = 0;  // order of the walk
@@ -78,8 +79,8 @@ class QueryChooser {
   /// What a walk finds of everything below a visit.
   struct Below {
     Box box_m;
-    bool hidden = true;  // every part is
-    bool known = false;  // some part has a verdict
+    bool hidden = true;    // every part is
+    bool known = false;    // some part has a verdict
     bool visible = false;  // some part was visible
   };
   /// Sums over parts asked.
@@ -129,7 +130,7 @@ class QueryChooser {
   std::size_t window_at_ = 0;
   std::vector<model::Observation> points_;  // scratch
   std::vector<Sum> curve_;                  // of hidden_, sorted: the first i of them
-  double kept_share_ = 1;  // of what was believed hidden, found so again
+  double kept_share_ = 1;                   // of what was believed hidden, found so again
   double best_ = 0;
   std::uint32_t last_asked_ = 0, useless_ = 0, wake_ = 0, rest_ = 0;
   double seconds_at_rest_ = 0;

@@ -128,8 +128,8 @@ TEST_CASE("gathering finds what is hidden, and few queries then keep it from bei
       run(world, 200);
       REQUIRE(world.chooser.phase() == QueryChooser::Phase::asking);
       CHECK(world.chooser.best() > 0);
-      // Nearly all of what could be skipped is, by queries about a tenth of the nodes, few of them for nothing.
-      // (A skipped draw in a secondary is not free: some chunks do not pay.)
+      // Nearly all of what could be skipped is, by queries about a tenth of the nodes, few of them for
+      // nothing. (A skipped draw in a secondary is not free: some chunks do not pay.)
       CHECK(world.plan.second.size() >= world.truly_hidden() * (indirect || !exact ? 9 : 6) / 10);
       const Totals totals = run(world, 100);
       CHECK(static_cast<double>(totals.queries) <= 100 * 0.1 * static_cast<double>(world.tree->node_count()));
