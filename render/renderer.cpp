@@ -269,6 +269,7 @@ void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline:
   const PlanCounters& counters = strategy->counters();
   report.tested = counters.tested;
   report.nodes = counters.nodes;
+  report.tree_nodes = counters.tree_nodes;
   report.drawn = counters.drawn;
   report.secondaries = counters.secondaries;
   report.recorded = counters.recorded;

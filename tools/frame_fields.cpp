@@ -13,6 +13,7 @@ std::span<const CounterField> counter_fields() {
       CounterField{"visible", &FrameReport::visible},
       CounterField{"tested", &FrameReport::tested},
       CounterField{"nodes", &FrameReport::nodes},
+      CounterField{"treeNodes", &FrameReport::tree_nodes},
       CounterField{"secondaries", &FrameReport::secondaries},
       CounterField{"recorded", &FrameReport::recorded},
       CounterField{"recordedDraws", &FrameReport::recorded_draws},

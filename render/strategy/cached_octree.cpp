@@ -63,6 +63,7 @@ void CachedOctree::plan(const View& view) {
   tree().cull(planes, view.eye_m(), chunks_, found_, &visits_);
   passes_ = 0;
   counters_.nodes = found_.nodes;
+  counters_.tree_nodes = tree().node_count();
   counters_.tested = list_.tested + found_.tests;
   counters_.drawn = list_.blended.size();
   for (const std::uint32_t chunk : chunks_) counters_.drawn += tree().chunk(chunk).slots.size();

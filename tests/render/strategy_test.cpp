@@ -30,6 +30,11 @@ struct Way {
   [[nodiscard]] RendererOptions options() const {
     RendererOptions o = path_options(strategy);
     o.how.node_form = form;
+    // On every device `queries` is to find that asking pays, though the scenes are small.
+    o.costs = model::rough_costs(true);
+    o.costs->query_s = 1e-6;
+    o.costs->ask_s = 1e-7;
+    o.costs->second_part_cpu_s = o.costs->second_part_device_s = 0;
     return o;
   }
 };
