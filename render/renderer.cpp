@@ -94,7 +94,7 @@ struct Renderer::State {
   void make_targets();
   [[nodiscard]] PassContext context(vkr::Frame& frame, vkr::Barriers& barriers);
   vkr::Buffer& readback(vkr::Buffer& buffer);
-  void update(const timeline::ChangeSet& changes, const timeline::Player& player);
+  void update(const timeline::ChangeSet& changes, const timeline::Player& player, FrameReport& report);
   void record_shadows(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report);
   void record_color(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report);
   void record_ids(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report);
@@ -154,7 +154,8 @@ void Renderer::State::build(const Scene& source, const timeline::Player& player)
   costs = options.costs ? *options.costs : model::rough_costs(device->info.type == "CPU");
   strategy = find_strategy(options.strategy)
                  ->make({*scene, *device, options.how, costs, options.frames_in_flight, options.size});
-  ring.emplace(*device, options.frames_in_flight);
+  const bool stages = device->info.type != "CPU" || options.gpu_stages_on_cpu;
+  ring.emplace(*device, options.frames_in_flight, stages);
 }
 
 void Renderer::State::make_targets() {
@@ -187,9 +188,14 @@ vkr::Buffer& Renderer::State::readback(vkr::Buffer& buffer) {
   return buffer;
 }
 
-void Renderer::State::update(const timeline::ChangeSet& changes, const timeline::Player& player) {
+void Renderer::State::update(const timeline::ChangeSet& changes, const timeline::Player& player,
+                             FrameReport& report) {
+  const StageTimer whole(report.update_ms);
   scene->apply(changes, player);
-  strategy->update(changes);
+  {
+    const StageTimer timer(report.update_octree_ms);
+    strategy->update(changes);
+  }
   for (const MaterialId id : changes.recolored)
     gpu->set_material_colors(id, player.base_color(id), player.emissive(id));
 }
@@ -204,19 +210,24 @@ void Renderer::State::record_shadows(vkr::Frame& frame, vkr::Barriers& barriers,
   }
   frame.commands.endRenderPass();
   barriers.image(shadow->depth, vkr::Use::sampled).flush(frame.commands);
+  frame.mark(frame.commands, GpuStage::shadows);
 }
 
 void Renderer::State::record_color(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report) {
   PassRecording pass(context(frame, barriers), *color);
   strategy->draw_solid(pass);
   const vk::raii::CommandBuffer& rest = pass.rest();
+  frame.mark(rest, pass.in_second_part() ? GpuStage::second_part : GpuStage::solid);
   DrawRecorder blended(rest, *pipelines, *gpu, *scene, vkr::PassKind::color);  // binds what the sky needs too
   rest.bindPipeline(vk::PipelineBindPoint::eGraphics, pipelines->sky());
   rest.draw(3, 1, 0, 0);
   strategy->draw_blended(blended);
   pass.end();
-  if (options.outputs.readback)
+  frame.mark(frame.commands, GpuStage::rest);
+  if (options.outputs.readback) {
     record_readback(frame.commands, color->result(), readback(frame.color), barriers);
+    frame.mark(frame.commands, GpuStage::readback);
+  }
   report.draws = pass.solid_draws() + blended.draws();
   report.triangles = pass.solid_triangles() + blended.triangles();
 }
@@ -225,11 +236,13 @@ void Renderer::State::record_ids(vkr::Frame& frame, vkr::Barriers& barriers, Fra
   PassRecording pass(context(frame, barriers), *ids);
   strategy->draw_solid(pass);
   pass.end();
+  frame.mark(frame.commands, GpuStage::ids);
   const Outputs& wanted = options.outputs;
   if (wanted.ids && wanted.readback)
     record_readback(frame.commands, ids->color, readback(frame.ids), barriers);
   if (wanted.depth && wanted.readback)
     record_readback(frame.commands, ids->depth, readback(frame.depth), barriers);
+  if (wanted.readback) frame.mark(frame.commands, GpuStage::readback);
   report.ids_draws = pass.solid_draws();
   report.ids_triangles = pass.solid_triangles();
 }
@@ -240,11 +253,8 @@ void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline:
   report.time_s = changes.time_s;
   report.changed = changes.count();
 
+  update(changes, player, report);
   auto start = Clock::now();
-  update(changes, player);
-  report.update_ms = ms_since(start);
-
-  start = Clock::now();
   strategy->plan(view);
   report.plan_ms = ms_since(start);
 
@@ -252,8 +262,12 @@ void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline:
   vkr::Frame& frame = ring->begin();
   vkr::Barriers barriers(options.full_barriers);
   const CameraBlock camera = camera_block(view, scene->bounds_m(), options.shadows);
-  report.uploaded_bytes = gpu->record_updates(frame, barriers, camera, *scene);
-  scene->clear_dirty();
+  {
+    const StageTimer timer(report.upload_ms);
+    report.uploaded_bytes = gpu->record_updates(frame, barriers, camera, *scene);
+    scene->clear_dirty();
+  }
+  frame.mark(frame.commands, GpuStage::updates);
   if (options.outputs.color) {
     record_shadows(frame, barriers, report);
     record_color(frame, barriers, report);
@@ -280,6 +294,10 @@ void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline:
   report.believed_hidden = counters.believed_hidden;
   report.found_hidden = counters.found_hidden;
   report.reveals = counters.reveals;
+  report.keep_ms = counters.times.keep_ms;
+  report.secondaries_ms = counters.times.secondaries_ms;
+  report.ask_ms = counters.times.ask_ms;
+  report.receive_ms = counters.times.receive_ms;
   unfinished.push_back({&frame, report});
 }
 
@@ -290,7 +308,10 @@ void Renderer::State::finish(FrameResult& out) {
   auto start = Clock::now();
   ring->wait(*frame);
   report.wait_ms = ms_since(start);
-  report.gpu_ms = ring->gpu_ms(*frame).value_or(-1.0);
+  if (const auto gpu_times = ring->gpu_times(*frame)) {
+    report.gpu_ms = gpu_times->frame_ms;
+    if (gpu_times->stages_ms) report.gpu_stages_ms = *gpu_times->stages_ms;
+  }
   start = Clock::now();
   const std::size_t pixels = std::size_t{options.size.x} * options.size.y;
   const auto copy = [&](auto& to, const vkr::Buffer& from, bool drawn) {

@@ -1,6 +1,7 @@
 // Draws a scene as its timeline plays. One frame, in named phases: update, plan, record, submit, finish.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "render/device_options.h"
+#include "render/gpu_stage.h"
 #include "render/model/unit_costs.h"
 #include "render/strategy_options.h"
 #include "render/view.h"
@@ -38,6 +40,8 @@ struct RendererOptions {
   /// Frames that may be submitted and not finished, 1 to 3. With 1 the processor and the device work one
   /// after the other.
   std::uint32_t frames_in_flight = 2;
+  /// For tests: times by pass on a CPU device too, where they mean nothing (it works when it likes).
+  bool gpu_stages_on_cpu = false;
   bool full_barriers = false;  ///< a full barrier at every step: must give equal pictures
 };
 
@@ -68,11 +72,20 @@ struct FrameReport {
   std::uint64_t ids_triangles = 0;
   std::uint64_t uploaded_bytes = 0;
   double update_ms = 0;
-  double plan_ms = 0;  ///< culling and sorting
+  double update_octree_ms = 0;  ///< of it the strategy's own part, T_upd(H)
+  double plan_ms = 0;           ///< culling and sorting
   double record_ms = 0;
+  double upload_ms = 0;       ///< of it copying what changed to staging memory
+  double keep_ms = 0;         ///< of it recording chunks that are kept, T_buf(H_upd), and finding the others
+  double secondaries_ms = 0;  ///< of it executing kept chunks, T_sec
+  double ask_ms = 0;          ///< of it recording queries, T_buf(H_q), and choosing what to ask
+  double receive_ms = 0;      ///< of it reading results of queries, T_recv
   double submit_ms = 0;
   double wait_ms = 0;  ///< what the processor waited for the device
   double gpu_ms = -1;  ///< between the frame's timestamps; -1 when the device has none
+  /// By GpuStage, of gpu_ms; -1 without timestamps and on a CPU device, whose timestamps inside a submission
+  /// say nothing.
+  std::array<double, kGpuStages> gpu_stages_ms{-1, -1, -1, -1, -1, -1, -1};
   double readback_ms = 0;
 };
 

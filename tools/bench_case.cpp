@@ -52,6 +52,13 @@ Result<BenchWay> parse_way(std::string_view text) {
   return way;
 }
 
+/// "gpuSolid".
+std::string gpu_stage(std::string_view name) {
+  std::string out = "gpu" + std::string(name);
+  out[3] = static_cast<char>(out[3] - 'a' + 'A');
+  return out;
+}
+
 /// Five digits behind the point: 10 ns.
 ordered_json rounded(const std::vector<double>& values) {
   ordered_json out = ordered_json::array();
@@ -136,6 +143,7 @@ struct BenchSeat::Pass {
     run.counters.assign(counter_fields().size(), 0);
     run.stages.emplace_back("seek");
     for (const StageField& field : stage_fields()) run.stages.emplace_back(field.name);
+    for (const std::string_view name : render::kGpuStageNames) run.stages.push_back(gpu_stage(name));
     run.stages_ms.resize(run.stages.size());
     for (std::vector<double>& values : run.stages_ms) values.reserve(frames);
     run.frame_ms.reserve(frames);
@@ -156,6 +164,8 @@ struct BenchSeat::Pass {
       run.stages_ms[i + 1].push_back(report.*field.value);
       if (field.cpu) cpu_ms += report.*field.value;
     }
+    for (std::size_t i = 0; i < render::kGpuStages; ++i)
+      run.stages_ms[1 + stage_fields().size() + i].push_back(report.gpu_stages_ms[i]);
     run.cpu_ms.push_back(cpu_ms);
     for (std::size_t i = 0; i < run.counters.size(); ++i)
       run.counters[i] += report.*counter_fields()[i].value;

@@ -38,8 +38,14 @@ std::span<const CounterField> counter_fields() {
 std::span<const StageField> stage_fields() {
   static constexpr std::array kFields{
       StageField{"update", &FrameReport::update_ms, true},
+      StageField{"updateOctree", &FrameReport::update_octree_ms, false},
       StageField{"cull", &FrameReport::plan_ms, true},
       StageField{"record", &FrameReport::record_ms, true},
+      StageField{"upload", &FrameReport::upload_ms, false},
+      StageField{"keep", &FrameReport::keep_ms, false},
+      StageField{"secondaries", &FrameReport::secondaries_ms, false},
+      StageField{"ask", &FrameReport::ask_ms, false},
+      StageField{"receive", &FrameReport::receive_ms, false},
       StageField{"submit", &FrameReport::submit_ms, true},
       StageField{"wait", &FrameReport::wait_ms, false},
       StageField{"gpu", &FrameReport::gpu_ms, false},

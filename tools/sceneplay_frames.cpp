@@ -103,6 +103,10 @@ ordered_json frame_json(const render::FrameReport& r, double seek_ms, double enc
     stages[std::string(field.name)] = ms < 0 ? ordered_json() : ordered_json(ms);
   }
   stages["encode"] = encode_ms;
+  ordered_json& gpu = out["gpuStagesMs"];
+  if (r.gpu_stages_ms.front() < 0) return out;  // null
+  for (std::size_t i = 0; i < render::kGpuStages; ++i)
+    gpu[std::string(render::kGpuStageNames[i])] = r.gpu_stages_ms[i];
   return out;
 }
 

@@ -30,6 +30,7 @@ void PassRecording::end_first_part() {
     recorder_.reset();
   }
   context_.frame.commands.endRenderPass();
+  if (target_.pass == vkr::PassKind::color) context_.frame.mark(context_.frame.commands, GpuStage::solid);
   part_ = vkr::PassPart::second;
   form_ = Form::not_begun;
 }

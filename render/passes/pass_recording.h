@@ -44,6 +44,7 @@ class PassRecording {
   /// Ends the first part; what is not allowed inside a pass can be recorded now, into
   /// context().frame.commands.
   void end_first_part();
+  [[nodiscard]] bool in_second_part() const { return part_ == vkr::PassPart::second; }
   /// Where to record what comes after the solid objects. State of earlier draws is not to be relied on.
   [[nodiscard]] const vk::raii::CommandBuffer& rest();
   /// Ends the pass.

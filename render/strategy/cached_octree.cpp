@@ -160,6 +160,7 @@ void CachedOctree::keep_secondaries(PassRecording& pass, std::span<const std::ui
 
 void CachedOctree::prepare(PassRecording& pass, std::span<const std::uint32_t> chunks,
                            vk::Buffer predicates) {
+  const StageTimer timer(counters_.times.keep_ms);
   if (!indirect_form_) return keep_secondaries(pass, chunks, predicates);
   // All at once, for all passes of the frame: staging memory is written once a frame.
   nodes_->update(pass.context(), tree(), chunks_, context_.options.reversed);
@@ -170,6 +171,7 @@ void CachedOctree::prepare(PassRecording& pass, std::span<const std::uint32_t> c
 
 void CachedOctree::execute(PassRecording& pass, std::span<const std::uint32_t> chunks,
                            vk::CommandBuffer last) {
+  const StageTimer timer(counters_.times.secondaries_ms);
   buffers_.clear();
   std::uint64_t draws = 0;
   std::uint64_t triangles = 0;
@@ -185,17 +187,30 @@ void CachedOctree::execute(PassRecording& pass, std::span<const std::uint32_t> c
 }
 
 void CachedOctree::draw(PassRecording& pass, std::span<const std::uint32_t> chunks, Occlusion* ask) {
-  if (!indirect_form_) return execute(pass, chunks, ask != nullptr ? ask->boxes(pass) : vk::CommandBuffer{});
+  if (!indirect_form_) {
+    vk::CommandBuffer boxes;
+    if (ask != nullptr) {
+      const StageTimer timer(counters_.times.ask_ms);
+      boxes = ask->boxes(pass);
+    }
+    return execute(pass, chunks, boxes);
+  }
   DrawRecorder& recorder = pass.draws();
   const vk::Buffer counts = ask != nullptr ? ask->predicates() : vk::Buffer{};
-  for (std::size_t i = 0; i < chunks.size(); ++i)
-    counters_.indirect_commands += nodes_->draw(recorder, in_order(chunks, i), counts, kLetPassOffset);
-  if (ask != nullptr) ask->draw_boxes(pass);
+  {
+    const StageTimer timer(counters_.times.secondaries_ms);
+    for (std::size_t i = 0; i < chunks.size(); ++i)
+      counters_.indirect_commands += nodes_->draw(recorder, in_order(chunks, i), counts, kLetPassOffset);
+  }
+  if (ask == nullptr) return;
+  const StageTimer timer(counters_.times.ask_ms);
+  ask->draw_boxes(pass);
 }
 
 void CachedOctree::draw_under(PassRecording& pass, std::span<const std::uint32_t> chunks,
                               const Occlusion& predicates) {
   if (!indirect_form_) return execute(pass, chunks, {});
+  const StageTimer timer(counters_.times.secondaries_ms);
   DrawRecorder& recorder = pass.draws();
   for (std::size_t i = 0; i < chunks.size(); ++i) {
     const std::uint32_t chunk = in_order(chunks, i);

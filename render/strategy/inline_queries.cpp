@@ -43,15 +43,17 @@ class InlineQueries final : public ListStrategy {
     const PassContext& context = recording.context();
     const bool color = recording.target().pass == vkr::PassKind::color;
     Pass& pass = passes_[color ? 0 : 1];
-    learn(pass, pass.occlusion->take_answers(context));
-    choose(pass, {recording.target().extent.width, recording.target().extent.height});
+    {
+      const StageTimer timer(counters_.times.receive_ms);
+      learn(pass, pass.occlusion->take_answers(context));
+    }
+    ask(pass, recording);
     counters_.queries += pass.asked.size();
     counters_.believed_hidden += pass.hidden.size();
     if (color) counters_.drawn -= pass.hidden.size();
-    pass.occlusion->reserve(context, pass.asked.size(), 0);
-    pass.occlusion->begin_frame(context, pass.asked, {});
     DrawRecorder& recorder = recording.draws();
     for (const std::uint32_t slot : pass.drawn) recorder.draw(slot);
+    const StageTimer timer(counters_.times.ask_ms);
     pass.occlusion->draw_boxes(recording);
   }
 
@@ -80,6 +82,14 @@ class InlineQueries final : public ListStrategy {
     std::vector<Asked> asked;
     std::vector<std::uint32_t> drawn, hidden;
   };
+
+  void ask(Pass& pass, const PassRecording& recording) {
+    const StageTimer timer(counters_.times.ask_ms);
+    const PassContext& context = recording.context();
+    choose(pass, {recording.target().extent.width, recording.target().extent.height});
+    pass.occlusion->reserve(context, pass.asked.size(), 0);
+    pass.occlusion->begin_frame(context, pass.asked, {});
+  }
 
   void learn(Pass& pass, const Occlusion::Answers& answers) {
     counters_.answers += answers.asked.size();

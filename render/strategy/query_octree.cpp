@@ -27,7 +27,41 @@ void QueryOctree::draw_chunks(PassRecording& pass) {
   const PassContext& context = pass.context();
   const Kind kind = pass.target().pass == vkr::PassKind::color ? color : ids;
   Occlusion& occlusion = *occlusion_[kind];
-  const Occlusion::Answers answers = occlusion.take_answers(context);
+  receive(kind, context);
+  QueryPlan& plan = plans_[kind];
+  {
+    const StageTimer timer(counters_.times.ask_ms);
+    plan.clear();
+    choose(kind, QueryBoxes(view(), {pass.target().extent.width, pass.target().extent.height}), plan);
+    occlusion.reserve(context, plan.asked.size(), tree().chunk_numbers());
+  }
+  counters_.queries += plan.asked.size();
+  for (const Asked& asked : plan.asked) counters_.believed_hidden += asked.believed_hidden ? 1 : 0;
+  if (!exact_ && kind == color) {
+    for (const std::uint32_t chunk : plan.second) counters_.drawn -= tree().chunk(chunk).slots.size();
+  }
+
+  prepare(pass, plan.first, occlusion.predicates());
+  if (exact_) prepare(pass, plan.second, occlusion.predicates());
+  {
+    const StageTimer timer(counters_.times.ask_ms);
+    occlusion.begin_frame(context, plan.asked, plan.governed);
+  }
+  const bool two_parts = exact_ && !plan.second.empty();
+  if (two_parts) pass.in_two_parts();
+  draw(pass, plan.first, &occlusion);
+  if (!two_parts) return;
+  pass.end_first_part();
+  {
+    const StageTimer timer(counters_.times.ask_ms);
+    occlusion.set_predicates(context);
+  }
+  draw_under(pass, plan.second, occlusion);
+}
+
+void QueryOctree::receive(Kind kind, const PassContext& context) {
+  const StageTimer timer(counters_.times.receive_ms);
+  const Occlusion::Answers answers = occlusion_[kind]->take_answers(context);
   counters_.answers += answers.asked.size();
   for (std::size_t i = 0; i < answers.asked.size(); ++i) {
     const bool hidden = answers.samples[i] == 0;
@@ -35,27 +69,6 @@ void QueryOctree::draw_chunks(PassRecording& pass) {
     counters_.reveals += !hidden && answers.asked[i].believed_hidden ? 1 : 0;
   }
   learn(kind, answers);
-
-  QueryPlan& plan = plans_[kind];
-  plan.clear();
-  choose(kind, QueryBoxes(view(), {pass.target().extent.width, pass.target().extent.height}), plan);
-  counters_.queries += plan.asked.size();
-  for (const Asked& asked : plan.asked) counters_.believed_hidden += asked.believed_hidden ? 1 : 0;
-  if (!exact_ && kind == color) {
-    for (const std::uint32_t chunk : plan.second) counters_.drawn -= tree().chunk(chunk).slots.size();
-  }
-
-  occlusion.reserve(context, plan.asked.size(), tree().chunk_numbers());
-  prepare(pass, plan.first, occlusion.predicates());
-  if (exact_) prepare(pass, plan.second, occlusion.predicates());
-  occlusion.begin_frame(context, plan.asked, plan.governed);
-  const bool two_parts = exact_ && !plan.second.empty();
-  if (two_parts) pass.in_two_parts();
-  draw(pass, plan.first, &occlusion);
-  if (!two_parts) return;
-  pass.end_first_part();
-  occlusion.set_predicates(context);
-  draw_under(pass, plan.second, occlusion);
 }
 
 model::FrameFacts QueryOctree::facts() const {

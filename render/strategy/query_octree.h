@@ -22,6 +22,7 @@ class QueryOctree : public CachedOctree {
   /// Passes have a depth each, so each asks for itself.
   enum Kind : std::size_t { color, ids };
   static constexpr std::size_t kKinds = 2;
+  void receive(Kind kind, const PassContext& context);
 
   /// Answers to what was asked some frames ago.
   virtual void learn(Kind kind, const Occlusion::Answers& answers) = 0;

@@ -10,6 +10,7 @@
 
 #include "render/draw_scene.h"
 #include "render/model/prediction.h"
+#include "render/stage_timer.h"
 #include "render/strategy_options.h"
 #include "render/view.h"
 
@@ -41,6 +42,12 @@ struct FrameTimes {
   double gpu_s = -1;
 };
 
+/// Parts of recording on the processor, in all passes (FrameReport names them); strategies add to them with
+/// StageTimer.
+struct StageTimes {
+  double keep_ms = 0, secondaries_ms = 0, ask_ms = 0, receive_ms = 0;
+};
+
 /// What planning and drawing found, for the frame report.
 struct PlanCounters {
   std::uint64_t tested = 0;             ///< boxes tested against the frustum
@@ -56,6 +63,7 @@ struct PlanCounters {
   std::uint64_t answers = 0;            ///< results of earlier frames, read in this one
   std::uint64_t found_hidden = 0;       ///< results of earlier frames, read in this one, that say hidden
   std::uint64_t reveals = 0;            ///< those that say visible of what was believed hidden
+  StageTimes times;
 };
 
 /// Knows neither files nor tracks. A frame: update() with a ChangeSet that DrawScene has taken, plan() on the

@@ -27,14 +27,23 @@ const vk::raii::CommandBuffer& Frame::secondary(const Device& device) {
   return secondaries[secondaries_used++];
 }
 
-FrameRing::FrameRing(const Device& device, std::uint32_t frames) : device_(device), frames_(frames) {
+void Frame::mark(const vk::raii::CommandBuffer& where, GpuStage stage) {
+  if (!marking || marked == kMostMarks) return;
+  where.writeTimestamp2(vk::PipelineStageFlagBits2::eAllCommands, *timestamps, 2 + marked);
+  marks[marked++] = stage;
+}
+
+FrameRing::FrameRing(const Device& device, std::uint32_t frames, bool stages)
+    : device_(device), frames_(frames) {
   for (Frame& f : frames_) {
     f.pool = vk::raii::CommandPool(device.device, {{}, device.queue_family});
     f.commands = std::move(
         vk::raii::CommandBuffers(device.device, {*f.pool, vk::CommandBufferLevel::ePrimary, 1}).front());
     f.fence = vk::raii::Fence(device.device, vk::FenceCreateInfo{});
     if (device.timestamps)
-      f.timestamps = vk::raii::QueryPool(device.device, {{}, vk::QueryType::eTimestamp, 2});
+      f.timestamps =
+          vk::raii::QueryPool(device.device, {{}, vk::QueryType::eTimestamp, 2 + Frame::kMostMarks});
+    f.marking = stages && device.timestamps;
   }
 }
 
@@ -52,10 +61,11 @@ Frame& FrameRing::begin() {
   f.staging.reset();
   f.pool.reset();
   f.secondaries_used = 0;
+  f.marked = 0;
   f.serial = ++serials_;
   f.commands.begin(vk::CommandBufferBeginInfo(vk::CommandBufferUsageFlagBits::eOneTimeSubmit));
   if (device_.timestamps) {
-    f.commands.resetQueryPool(*f.timestamps, 0, 2);
+    f.commands.resetQueryPool(*f.timestamps, 0, 2 + Frame::kMostMarks);
     f.commands.writeTimestamp2(vk::PipelineStageFlagBits2::eAllCommands, *f.timestamps, 0);
   }
   return f;
@@ -83,13 +93,26 @@ void FrameRing::wait_all() {
   for (Frame& f : frames_) wait(f);
 }
 
-std::optional<double> FrameRing::gpu_ms(const Frame& frame) const {
+std::optional<FrameRing::GpuTimes> FrameRing::gpu_times(const Frame& frame) const {
   if (!device_.timestamps) return std::nullopt;
-  const auto [result, ticks] = frame.timestamps.getResults<std::uint64_t>(
-      0, 2, 2 * sizeof(std::uint64_t), sizeof(std::uint64_t), vk::QueryResultFlagBits::e64);
+  std::array<std::uint64_t, 2 + Frame::kMostMarks> ticks;
+  const std::uint32_t count = 2 + frame.marked;
+  const vk::Result result =
+      (*device_.device)
+          .getQueryPoolResults(*frame.timestamps, 0, count, count * sizeof(ticks[0]), ticks.data(),
+                               sizeof(ticks[0]), vk::QueryResultFlagBits::e64,
+                               *device_.device.getDispatcher());
   if (result != vk::Result::eSuccess) return std::nullopt;
-  return static_cast<double>(ticks[1] - ticks[0]) *
-         static_cast<double>(device_.properties.limits.timestampPeriod) * 1e-6;
+  const auto ms = [&](std::uint64_t from, std::uint64_t to) {
+    return static_cast<double>(to - from) * static_cast<double>(device_.properties.limits.timestampPeriod) *
+           1e-6;
+  };
+  GpuTimes out{ms(ticks[0], ticks[1]), std::nullopt};
+  if (!frame.marking) return out;
+  out.stages_ms.emplace().fill(0.0);
+  for (std::uint32_t i = 0; i < frame.marked; ++i)
+    (*out.stages_ms)[static_cast<std::size_t>(frame.marks[i])] += ms(ticks[i == 0 ? 0 : 1 + i], ticks[2 + i]);
+  return out;
 }
 
 void run_once(const Device& device, const std::function<void(const vk::raii::CommandBuffer&)>& record) {

@@ -1,6 +1,7 @@
 // What each frame in flight owns: commands, fence, staging, timestamps, and a list of things to let go.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -8,6 +9,7 @@
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
 
+#include "render/gpu_stage.h"
 #include "render/vk/memory.h"
 
 namespace scenegen::render::vkr {
@@ -37,6 +39,14 @@ struct Frame {
   std::uint64_t serial = 0;  // counts frames from 1
   bool pending = false;      // submitted and not yet waited for
 
+  /// A timestamp for the end of `stage`, which began where the mark before it was set. A stage may come
+  /// several times. Does nothing unless the ring was made for it.
+  void mark(const vk::raii::CommandBuffer& where, GpuStage stage);
+  static constexpr std::uint32_t kMostMarks = 16;
+  bool marking = false;
+  std::array<GpuStage, kMostMarks> marks{};
+  std::uint32_t marked = 0;
+
   /// A secondary command buffer for this frame only, not yet begun.
   const vk::raii::CommandBuffer& secondary(const Device& device);
   std::deque<vk::raii::CommandBuffer> secondaries;  // a deque: those handed out stay where they are
@@ -46,7 +56,8 @@ struct Frame {
 /// Frames are used in turn. `acquire` waits for the device only when the frame is still pending.
 class FrameRing {
  public:
-  FrameRing(const Device& device, std::uint32_t frames);
+  /// `stages`: frames measure their stages too, not just the whole.
+  FrameRing(const Device& device, std::uint32_t frames, bool stages = false);
   ~FrameRing();
   FrameRing(const FrameRing&) = delete;
   FrameRing& operator=(const FrameRing&) = delete;
@@ -60,8 +71,13 @@ class FrameRing {
   void wait_all();
   /// The device is done with this frame and all before it.
   [[nodiscard]] std::uint64_t completed() const { return completed_; }
-  /// Milliseconds between the frame's two timestamps; none when the device has no timestamps.
-  [[nodiscard]] std::optional<double> gpu_ms(const Frame& frame) const;
+  /// Milliseconds from the beginning of the frame to its end, and of each stage (0: not in this frame). None
+  /// when the device has no timestamps; no stages when they are not measured. The frame must be done.
+  struct GpuTimes {
+    double frame_ms = 0;
+    std::optional<std::array<double, kGpuStages>> stages_ms;
+  };
+  [[nodiscard]] std::optional<GpuTimes> gpu_times(const Frame& frame) const;
 
  private:
   const Device& device_;

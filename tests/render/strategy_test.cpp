@@ -327,6 +327,47 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("stages of processor and device are parts of the whole, and those that are not used are 0") {
+  const Path path = std::move(strategy_paths(10, 450)[2]);
+  for (const NodeForm form : {NodeForm::secondaries, NodeForm::indirect}) {
+    for (const char* strategy : {"inline", "octree", "queries-all", "inline-queries"}) {
+      INFO(strategy << " " << static_cast<int>(form));
+      RendererOptions options = path_options(strategy);
+      options.how.node_form = form;
+      options.shadows = true;
+      options.gpu_stages_on_cpu = true;
+      const Run run = run_path(path, options);
+      const bool asks = std::string(strategy).find("queries") != std::string::npos;
+      double receive = 0, second = 0;
+      for (const FrameResult& frame : run.frames) {
+        const FrameReport& r = frame.report;
+        CHECK(r.update_octree_ms <= r.update_ms);
+        CHECK(r.upload_ms > 0);
+        CHECK(r.upload_ms + r.keep_ms + r.secondaries_ms + r.ask_ms + r.receive_ms <= r.record_ms);
+        CHECK((r.secondaries_ms > 0) == !std::string(strategy).starts_with("inline"));
+        CHECK((r.ask_ms > 0) == asks);
+        REQUIRE(r.gpu_ms > 0);
+        double sum = 0;
+        for (const double ms : r.gpu_stages_ms) {
+          CHECK(ms >= 0);
+          sum += ms;
+        }
+        CHECK(sum <= Approx(r.gpu_ms));
+        receive += r.receive_ms;
+        second += r.gpu_stages_ms[static_cast<std::size_t>(GpuStage::second_part)];
+      }
+      CHECK((receive > 0) == asks);
+      CHECK((second > 0) == (std::string(strategy) == "queries-all"));
+    }
+  }
+  RendererOptions options = path_options("inline");
+  auto device = share_device(options.device);
+  REQUIRE(device);
+  const bool software = info_of(**device).type == "CPU";
+  for (const FrameResult& frame : run_path(path, options).frames)
+    CHECK((frame.report.gpu_stages_ms.front() < 0) == software);
+}
+
 TEST_CASE(
     "without conditional rendering queries stay exact by indirect draws; without those too they come late") {
   const Path path = std::move(strategy_paths(12, 450)[0]);
