@@ -11,9 +11,11 @@
 #include "render/config.h"
 #include "render/draw_scene.h"
 #include "render/gpu_scene.h"
+#include "render/model/experience.h"
 #include "render/passes/draw_recorder.h"
 #include "render/passes/pass_recording.h"
 #include "render/passes/targets.h"
+#include "render/strategy/octree_choice.h"
 #include "render/strategy/strategy.h"
 
 namespace scenegen::render {
@@ -99,6 +101,17 @@ struct Renderer::State {
   void record_color(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report);
   void record_ids(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report);
   void submit(const timeline::ChangeSet& changes, const timeline::Player& player, const View& view);
+  [[nodiscard]] StrategyContext strategy_context() const {
+    return {*scene,
+            *device,
+            options.how,
+            costs,
+            options.frames_in_flight,
+            options.size,
+            false,
+            options.shadows && options.outputs.color};
+  }
+  void predict(FrameReport& report) const;
   void finish(FrameResult& out);
   /// Runs `body`; what Vulkan throws becomes an error, or the end of the program when the device is lost.
   template <class Body>
@@ -152,8 +165,7 @@ void Renderer::State::build(const Scene& source, const timeline::Player& player)
                        vk::SampleCountFlagBits::e1);
   gpu->bind_shadow_map(shadow->depth);
   costs = options.costs ? *options.costs : model::rough_costs(device->info.type == "CPU");
-  strategy = find_strategy(options.strategy)
-                 ->make({*scene, *device, options.how, costs, options.frames_in_flight, options.size});
+  strategy = find_strategy(options.strategy)->make(strategy_context());
   const bool stages = device->info.type != "CPU" || options.gpu_stages_on_cpu;
   ring.emplace(*device, options.frames_in_flight, stages);
 }
@@ -298,7 +310,32 @@ void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline:
   report.secondaries_ms = counters.times.secondaries_ms;
   report.ask_ms = counters.times.ask_ms;
   report.receive_ms = counters.times.receive_ms;
+  report.strategy_used = find_strategy(options.strategy)->name;
+  if (const ChoiceReport* choice = strategy->choice()) {
+    report.strategy_used = choice->used;
+    report.verdict = choice->verdict;
+    report.choose_ms = choice->choose_s * 1e3;
+  }
+  if (options.predictions) predict(report);
   unfinished.push_back({&frame, report});
+}
+
+/// What every way of drawing would have cost; what the one that was taken did not find out is estimated.
+void Renderer::State::predict(FrameReport& report) const {
+  model::FrameFacts facts = strategy->facts();
+  facts.changed = static_cast<double>(report.changed);
+  if (options.shadows && options.outputs.color) {
+    facts.shadow_slots = facts.visible.draws;
+    facts.shadow_vertices = facts.visible.vertices;
+  }
+  const StrategyContext context = strategy_context();
+  model::Experience{}.fill_unknown(facts, choose_objects_per_node(context).value_or(kObjectsPerNode), 0.0);
+  model::PredictionOptions how;
+  how.frames_in_flight = options.frames_in_flight;
+  how.indirect_nodes = indirect_nodes(context);
+  how.exact = !options.how.late_visibility;
+  for (std::size_t m = 0; m < model::kMethods; ++m)
+    report.predicted[m] = model::predict(static_cast<model::Method>(m), facts, costs, how);
 }
 
 void Renderer::State::finish(FrameResult& out) {
@@ -324,9 +361,10 @@ void Renderer::State::finish(FrameResult& out) {
   copy(out.depth, frame->depth, options.outputs.depth);
   report.readback_ms = ms_since(start);
   out.report = report;
-  strategy->finished({frame->serial,
-                      (report.update_ms + report.plan_ms + report.record_ms + report.submit_ms) * 1e-3,
-                      report.gpu_ms * 1e-3});
+  strategy->finished(
+      {frame->serial,
+       (report.update_ms + report.plan_ms + report.record_ms + report.submit_ms + report.readback_ms) * 1e-3,
+       report.gpu_ms * 1e-3});
 }
 
 Result<Renderer> Renderer::create(const Scene& scene, const timeline::Player& player,

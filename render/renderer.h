@@ -7,10 +7,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "render/device_options.h"
 #include "render/gpu_stage.h"
+#include "render/model/choice.h"
 #include "render/model/unit_costs.h"
 #include "render/strategy_options.h"
 #include "render/view.h"
@@ -36,6 +38,7 @@ struct RendererOptions {
   std::string strategy = "inline";
   StrategyOptions how;
   std::optional<model::UnitCosts> costs;  ///< from a calibration of this device; none: rough ones
+  bool predictions = false;  ///< FrameReport::predicted is wanted; costs some 50 us a frame, in no stage
   bool shadows = true;
   /// Frames that may be submitted and not finished, 1 to 3. With 1 the processor and the device work one
   /// after the other.
@@ -87,6 +90,12 @@ struct FrameReport {
   /// say nothing.
   std::array<double, kGpuStages> gpu_stages_ms{-1, -1, -1, -1, -1, -1, -1};
   double readback_ms = 0;
+
+  std::string_view strategy_used;  ///< of `adaptive`: what it took
+  model::Verdict verdict;          ///< and why; model::in_words()
+  double choose_ms = 0;            ///< what choosing took, part of plan_ms
+  /// By model::Method, with RendererOptions::predictions; not corrected.
+  std::array<model::Prediction, model::kMethods> predicted;
 };
 
 /// Rows from the top. Pictures that were not asked for are empty.

@@ -25,6 +25,10 @@ struct StrategyOptions {
   bool no_indirect_draws = false;
   /// For tests: as if the device had no conditional rendering.
   bool no_conditional_rendering = false;
+  /// `adaptive`: predictions are corrected, slowly, by what frames took.
+  bool correction = true;
+  /// For tests: `adaptive` takes another way every so many frames, whatever it costs; 0: never.
+  std::uint32_t change_every = 0;
   /// For tests: keeping the commands of more chunks than this fails as if memory were out; 0: never.
   std::uint64_t fail_after_buffers = 0;
 };

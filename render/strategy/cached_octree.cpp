@@ -71,11 +71,16 @@ void CachedOctree::plan(const View& view) {
 
 void CachedOctree::foresee(model::FrameFacts& facts) const {
   if (inline_) return;
+  facts.objects = static_cast<double>(scene_.object_count());
+  facts.visible_slots = tree().root().content.slots;
   facts.height = model::octree_height(tree().root().content.slots, objects_per_node_);
   facts.nodes_visited = static_cast<double>(found_.nodes);
   facts.boxes_tested = static_cast<double>(found_.tests);
   facts.chunks = static_cast<double>(chunks_.size());
   facts.in_chunks = load_of_chunks(scene_, tree(), chunks_, ScreenArea(view_, context_.size));
+  facts.in_frustum = load_in_frustum(scene_, tree(), chunks_,
+                                     cull_planes(frustum_of(view_.clip_from_world), scene_.bounds_m()),
+                                     ScreenArea(view_, context_.size));
   facts.chunks_rerecorded = facts.draws_rerecorded = 0;
   for (const std::uint32_t number : chunks_) {
     const Octree::Chunk& chunk = tree().chunk(number);
@@ -136,7 +141,7 @@ model::FrameFacts CachedOctree::facts() const {
   facts.moved = static_cast<double>(moved_);
   foresee(facts);
   facts.chunks_rerecorded = static_cast<double>(counters_.recorded) / recordings();
-  facts.draws_rerecorded = static_cast<double>(counters_.recorded_draws) / recordings();
+  facts.draws_rerecorded = rerecorded_draws();
   facts.exact_octree = true;
   return facts;
 }

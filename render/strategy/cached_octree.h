@@ -45,6 +45,10 @@ class CachedOctree : public Strategy {
   /// After plan(), before anything is drawn: what drawing the octree would find. All of it is exact but the
   /// fragments. Fills the octree's part of `facts`.
   void foresee(model::FrameFacts& facts) const;
+  /// Draws recorded anew in the last frame, for one pass.
+  [[nodiscard]] double rerecorded_draws() const {
+    return static_cast<double>(counters_.recorded_draws) / recordings();
+  }
 
  protected:
   /// Draws the chunks in the frustum, `chunks_`. What needs memory comes first: when it throws for want of

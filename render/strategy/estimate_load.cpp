@@ -151,4 +151,30 @@ void add_scene_facts(const DrawScene& scene, const ScreenArea& screen, model::Fr
   facts.visible = load_of_visible(scene, screen);
 }
 
+model::Load load_in_frustum(const DrawScene& scene, const Octree& tree, std::span<const std::uint32_t> chunks,
+                            const CullPlanes& planes, const ScreenArea& screen) {
+  std::size_t count = 0;
+  for (const std::uint32_t number : chunks) count += tree.chunk(number).slots.size();
+  Sample sample(scene, screen);
+  Steps steps(count);
+  std::size_t passed = 0;
+  std::size_t inside = 0;
+  std::size_t taken = 0;
+  for (const std::uint32_t number : chunks) {
+    const std::vector<std::uint32_t>& slots = tree.chunk(number).slots;
+    for (; steps.below(passed + slots.size()); steps.next(), ++taken) {
+      const std::uint32_t slot = slots[steps.at() - passed];
+      const auto all = planes.all();
+      const Box box = scene.boxes().get(slot);
+      if (std::any_of(all.begin(), all.end(),
+                      [&](const CullPlane& plane) { return side_of(plane, box) == Side::outside; }))
+        continue;
+      sample.add(slot);
+      ++inside;
+    }
+    passed += slots.size();
+  }
+  return sample.scaled(taken == 0 ? 0 : inside * count / taken);
+}
+
 }  // namespace scenegen::render

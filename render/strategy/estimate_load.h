@@ -40,6 +40,10 @@ constexpr std::size_t kSampledSlots = 512;
 /// Draws and vertices are exact, fragments by the chunks' boxes and the share of them that is occupied.
 [[nodiscard]] model::Load load_of_chunks(const DrawScene& scene, const Octree& tree,
                                          std::span<const std::uint32_t> chunks, const ScreenArea& screen);
+/// Of the slots of these chunks, those in the frustum: all by a sample.
+[[nodiscard]] model::Load load_in_frustum(const DrawScene& scene, const Octree& tree,
+                                          std::span<const std::uint32_t> chunks, const CullPlanes& planes,
+                                          const ScreenArea& screen);
 
 /// What all ways of drawing know of the scene.
 void add_scene_facts(const DrawScene& scene, const ScreenArea& screen, model::FrameFacts& facts);

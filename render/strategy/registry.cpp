@@ -13,6 +13,7 @@ std::unique_ptr<Strategy> make_octree_record(const StrategyContext& context);
 std::unique_ptr<Strategy> make_octree(const StrategyContext& context);
 std::unique_ptr<Strategy> make_queries(const StrategyContext& context);
 std::unique_ptr<Strategy> make_queries_all(const StrategyContext& context);
+std::unique_ptr<Strategy> make_adaptive(const StrategyContext& context);
 
 std::span<const StrategyEntry> strategies() {
   static constexpr std::array kEntries{
@@ -25,6 +26,9 @@ std::span<const StrategyEntry> strategies() {
       StrategyEntry{"octree", "octree culling, commands of each node kept", &make_octree},
       StrategyEntry{"queries-all", "the same, with an occlusion query for every node", &make_queries_all},
       StrategyEntry{"queries", "the same, with as many occlusion queries as pay", &make_queries},
+      StrategyEntry{"adaptive",
+                    "the cheapest of inline, octree and queries by a model of what they cost, each frame",
+                    &make_adaptive},
   };
   return kEntries;
 }

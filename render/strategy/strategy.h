@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "render/draw_scene.h"
+#include "render/model/choice.h"
 #include "render/model/prediction.h"
 #include "render/stage_timer.h"
 #include "render/strategy_options.h"
@@ -33,6 +34,7 @@ struct StrategyContext {
   glm::uvec2 size{0};  ///< of the pictures, pixels; resized() tells another
   /// An octree starts empty and is filled by CachedOctree::catch_up(), a slice a frame.
   bool octree_in_slices = false;
+  bool shadows = false;  ///< of the sun are drawn, whatever the strategy
 };
 
 /// What a frame took that was submitted some frames ago, seconds; gpu_s < 0: not measured.
@@ -66,6 +68,13 @@ struct PlanCounters {
   StageTimes times;
 };
 
+/// What a strategy that chooses among others took.
+struct ChoiceReport {
+  std::string_view used;  ///< name of a strategy
+  model::Verdict verdict;
+  double choose_s = 0;  ///< what the choice itself took, part of plan()
+};
+
 /// Knows neither files nor tracks. A frame: update() with a ChangeSet that DrawScene has taken, plan() on the
 /// processor, then draw_solid() and draw_blended() once a pass.
 class Strategy {
@@ -88,6 +97,9 @@ class Strategy {
   /// For the model's prediction of the frame that was just drawn; what this way of drawing did not find out
   /// stays 0 and `exact_*` false. Not part of drawing: called only when someone wants predictions.
   [[nodiscard]] virtual model::FrameFacts facts() const { return {}; }
+
+  /// Of a strategy that chooses among others, about the last plan(); null: it does not.
+  [[nodiscard]] virtual const ChoiceReport* choice() const { return nullptr; }
 
   /// Of the last plan and the passes since.
   [[nodiscard]] const PlanCounters& counters() const { return counters_; }

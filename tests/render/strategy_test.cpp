@@ -134,6 +134,37 @@ TEST_CASE("the same on long paths through more objects", "[.long]") {
   }
 }
 
+TEST_CASE("adaptive draws the same however often it changes its way") {
+  for (const Path& path : strategy_paths(40, 450)) {
+    DYNAMIC_SECTION(path.name) {
+      RendererOptions options = path_options("brute");
+      const Run brute = run_path(path, options);
+      options.how.reversed = true;
+      const Run backwards = run_path(path, options);
+      options = path_options("adaptive");
+      const bool even = path.name.size() % 2 == 0;
+      options.how.change_every = even ? 4 : 5;
+      options.how.node_form = even ? NodeForm::indirect : NodeForm::secondaries;
+      options.frames_in_flight = even ? 3 : 2;
+      const Run run = run_path(path, options);
+      const Difference d = difference(run, brute, backwards);
+      CHECK(d.depth == 0);
+      CHECK(d.ids == 0);
+      CHECK(d.color == 0);
+      CHECK(run.warnings.empty());
+      std::size_t changes = 0, flat = 0;
+      for (std::size_t i = 0; i < run.frames.size(); ++i) {
+        const bool now = run.frames[i].report.strategy_used == "inline";
+        flat += now ? 1 : 0;
+        changes += i > 0 && now != (run.frames[i - 1].report.strategy_used == "inline") ? 1 : 0;
+      }
+      CHECK(changes >= 7);
+      CHECK(flat >= 15);
+      CHECK(flat <= 25);
+    }
+  }
+}
+
 TEST_CASE("octree keeps commands: nothing changed, nothing recorded; what changed is recorded alone") {
   const Path path = std::move(strategy_paths(40, 450)[2]);  // a still camera before vanishing walls
   const Run run = run_path(path, Way{"octree"}.options());

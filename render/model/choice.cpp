@@ -1,0 +1,197 @@
+#include "render/model/choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace scenegen::render::model {
+namespace {
+
+const double kMostLn = std::log(2.0);
+/// Frames after a change whose surprises are the new way's own.
+constexpr std::uint32_t kFresh = 12;
+/// A change is soon when it comes within so many frames after another.
+constexpr double kSoon = 240;
+
+double bounded(double ln) {
+  return std::clamp(ln, -kMostLn, kMostLn);
+}
+
+std::size_t index(Method method) {
+  return static_cast<std::size_t>(method);
+}
+
+}  // namespace
+
+void Correction::learn(Side& side, Method method, bool fresh, double ratio) const {
+  // A single frame that took ten times as long (somebody else's turn) says no more than one that took twice.
+  const double surprise = bounded(std::log(ratio) - factor(side, method));
+  double& own = side.own[index(method)];
+  if (fresh) own = bounded(own + 0.2 * surprise);
+  side.machine = bounded(side.machine + (fresh ? 0.01 : 0.04) * surprise);
+}
+
+void Correction::measured(Method method, std::uint32_t since_change, const Sides& predicted,
+                          const Sides& taken) {
+  if (frames_[index(method)] == 0) {
+    const Method relative = known_relative(method);
+    cpu_.own[index(method)] = cpu_.own[index(relative)];
+    gpu_.own[index(method)] = gpu_.own[index(relative)];
+  }
+  // With nothing to compare to, all surprise is the machine's.
+  bool others = false;
+  for (std::size_t m = 0; m < kMethods; ++m) others = others || (m != index(method) && frames_[m] > 0);
+  const bool fresh = others && since_change < kFresh;
+  if (predicted.cpu_s > 0.0 && taken.cpu_s > 0.0) learn(cpu_, method, fresh, taken.cpu_s / predicted.cpu_s);
+  if (predicted.gpu_s > 0.0 && taken.gpu_s > 0.0) learn(gpu_, method, fresh, taken.gpu_s / predicted.gpu_s);
+  ++frames_[index(method)];
+}
+
+Method Correction::known_relative(Method method) const {
+  static constexpr std::array kKin{Method::octree, Method::queries, Method::queries_all};
+  if (frames_[index(method)] > 0 || std::find(kKin.begin(), kKin.end(), method) == kKin.end()) return method;
+  for (const Method kin : kKin) {
+    if (frames_[index(kin)] > 0) return kin;
+  }
+  return method;
+}
+
+bool Correction::knows(Method method) const {
+  return frames_[index(known_relative(method))] > 0;
+}
+
+double Correction::factor(const Side& side, Method method) const {
+  return bounded(side.machine + side.own[index(known_relative(method))]);
+}
+
+Sides Correction::corrected(Method method, const Sides& predicted) const {
+  return {predicted.cpu_s * std::exp(factor(cpu_, method)), predicted.gpu_s * std::exp(factor(gpu_, method))};
+}
+
+std::string in_words(const Verdict& v) {
+  std::string text;
+  const auto add = [&](const char* format, double ms) {
+    std::array<char, 64> buffer;
+    (void)std::snprintf(buffer.data(), buffer.size(), format, ms);
+    text += buffer.data();
+  };
+  text += name_of(v.used);
+  add(": %.2f ms", v.used_s * 1e3);
+  if (v.reason == Reason::alone) return text + ", no other way is possible";
+  text += " against ";
+  text += name_of(v.rival);
+  add(" %.2f ms", v.rival_s * 1e3);
+  switch (v.reason) {
+    case Reason::too_near:
+      return text + ", too near to change";
+    case Reason::patience:
+      return text + ", waiting whether that lasts";
+    case Reason::no_pay:
+      return text + ", changing would not pay";
+    case Reason::preparing:
+      return text + ", which is being prepared";
+    case Reason::trial:
+      return text + ", on trial";
+    case Reason::forced:
+      return text + ", forced";
+    case Reason::cheaper:
+    case Reason::alone:
+      break;
+  }
+  return text;
+}
+
+void Choice::pass(double elapsed, double frame_s) {
+  since_change_ += elapsed;
+  since_trial_ += elapsed;
+  trial_left_ = std::max(0.0, trial_left_ - elapsed);
+  penalty_ *= std::pow(0.995, elapsed);
+  trial_purse_s_ += options_.trial_share * elapsed * frame_s;
+}
+
+bool Choice::worth_a_trial(const Offer& now, const Offer& other, const Correction& correction) const {
+  const bool known = correction.knows(other.method);
+  if (known && since_trial_ < options_.trial_again_frames) return false;
+  const double reach = known ? 0.5 * (1.0 + options_.trial_reach) : options_.trial_reach;
+  if (other.frame_s > reach * now.frame_s) return false;
+  if (options_.trial_share <= 0.0) return false;
+  const double cost =
+      other.change_s + options_.trial_frames * std::max(0.1 * now.frame_s, other.frame_s - now.frame_s);
+  return cost <= trial_purse_s_;
+}
+
+std::optional<Reason> Choice::objection(const Offer& now, const Offer& other, std::size_t number,
+                                        double elapsed) {
+  const double saved_s = now.frame_s - other.frame_s;
+  const double margin_s = options_.margin * (1.0 + penalty_) * now.frame_s;
+  if (saved_s <= margin_s || wanted_ != number) {
+    wanted_ = number;
+    wanted_frames_ = 0;
+    missed_s_ = 0;
+  }
+  if (saved_s <= 0.0) return Reason::cheaper;
+  if (saved_s <= margin_s) return Reason::too_near;
+  wanted_frames_ += elapsed;
+  missed_s_ += saved_s * elapsed;
+  if (wanted_frames_ < options_.frames) return Reason::patience;
+  const double horizon = options_.horizon_frames / (1.0 + penalty_);
+  if (saved_s * horizon < other.change_s && missed_s_ < other.change_s) return Reason::no_pay;
+  return std::nullopt;
+}
+
+Choice::Decision Choice::decide(std::span<const Offer> offers, std::size_t present, std::uint32_t elapsed,
+                                const Correction* correction) {
+  const Offer& now = offers[present];
+  pass(elapsed, now.frame_s);
+  Decision d;
+  d.take = present;
+  d.verdict = {now.method, now.method, now.frame_s, now.frame_s, Reason::alone};
+  std::size_t best = offers.size();
+  for (std::size_t i = 0; i < offers.size(); ++i) {
+    if (i == present || !offers[i].possible) continue;
+    if (best == offers.size() || offers[i].frame_s < offers[best].frame_s) best = i;
+  }
+  if (best == offers.size()) return d;
+  const Offer& other = offers[best];
+  d.verdict.rival = other.method;
+  d.verdict.rival_s = other.frame_s;
+  if (!now.possible) {
+    d.take = best;
+  } else if (trial_left_ > 0.0) {
+    d.verdict.reason = Reason::trial;
+    return d;
+  } else {
+    const std::optional<Reason> against = objection(now, other, best, elapsed);
+    d.trial = against && against != Reason::patience && correction != nullptr &&
+              worth_a_trial(now, other, *correction);
+    d.verdict.reason = against.value_or(Reason::cheaper);
+    if (!against || d.trial) d.take = best;
+  }
+  if (d.take == present) return d;
+  if (!other.ready) {
+    d.verdict.reason = Reason::preparing;
+  } else {
+    std::swap(d.verdict.used, d.verdict.rival);
+    std::swap(d.verdict.used_s, d.verdict.rival_s);
+    d.verdict.reason = d.trial ? Reason::trial : Reason::cheaper;
+  }
+  return d;
+}
+
+void Choice::changed(const Decision& decision) {
+  if (decision.trial) {
+    trial_left_ = options_.trial_frames;
+    since_trial_ = 0;
+    trial_purse_s_ = 0;
+    after_trial_ = true;
+  } else {
+    // Going back after a trial is what a trial is for.
+    if (since_change_ < kSoon && !after_trial_) penalty_ = std::min(2.0 * penalty_ + 1.0, 15.0);
+    after_trial_ = false;
+  }
+  since_change_ = 0;
+  wanted_frames_ = 0;
+  missed_s_ = 0;
+}
+
+}  // namespace scenegen::render::model

@@ -1,0 +1,129 @@
+// Which way of drawing to take for the next frame (D 3.3): by predictions, corrected by what frames really
+// took, and not changed more often than it pays.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "render/model/prediction.h"
+
+namespace scenegen::render::model {
+
+/// Seconds of a frame on both sides.
+struct Sides {
+  double cpu_s = 0, gpu_s = 0;
+};
+
+/// A slow, bounded correction: measured time / predicted time, on each side the product of a factor of the
+/// machine (others may use it too) and one of the way of drawing. What drifts while a way is taken is the
+/// machine's, and holds for all ways; what jumps when a way is taken is its own. So a way that is not taken
+/// keeps its relation to the others, and one that never was has the factor of its nearest relative. The
+/// product stays in [1/2, 2].
+class Correction {
+ public:
+  /// A frame drawn by `method`; `since_change`: frames since another way was taken. `taken` < 0: not
+  /// measured.
+  void measured(Method method, std::uint32_t since_change, const Sides& predicted, const Sides& taken);
+  [[nodiscard]] Sides corrected(Method method, const Sides& predicted) const;
+  /// Was this way, or a near relative, ever measured?
+  [[nodiscard]] bool knows(Method method) const;
+
+ private:
+  struct Side {
+    double machine = 0;                  // ln
+    std::array<double, kMethods> own{};  // ln
+  };
+  void learn(Side& side, Method method, bool fresh, double ratio) const;
+  [[nodiscard]] double factor(const Side& side, Method method) const;
+  /// Itself, if it was measured.
+  [[nodiscard]] Method known_relative(Method method) const;
+
+  Side cpu_, gpu_;
+  std::array<std::uint32_t, kMethods> frames_{};  // measured
+};
+
+/// A way that could be taken.
+struct Offer {
+  Method method = Method::inline_frustum;
+  double frame_s = 0;    ///< what a frame takes (2.12), in steady state
+  double change_s = 0;   ///< what changing to it costs once: building, bringing up to date, recording
+  bool possible = true;  ///< can it be taken at all?
+  bool ready = true;     ///< at once; otherwise it has to be prepared first
+};
+
+/// Why a way was taken or kept.
+enum class Reason : std::uint8_t {
+  cheaper,    ///< no other way is predicted to take less
+  too_near,   ///< another takes less, but by less than the margin
+  patience,   ///< another takes less, but not for long enough yet
+  no_pay,     ///< another takes less, but changing to it would not pay back
+  preparing,  ///< another takes less, and is being prepared, a slice a frame
+  trial,      ///< taken for some frames to measure it
+  forced,     ///< by an option for tests
+  alone       ///< no other is possible
+};
+
+/// What was chosen, and both sides of the inequality; `rival` is the best of the others.
+struct Verdict {
+  Method used = Method::inline_frustum;
+  Method rival = Method::inline_frustum;
+  double used_s = 0, rival_s = 0;
+  Reason reason = Reason::alone;
+};
+/// "octree: 2.10 ms against inline 5.71 ms".
+[[nodiscard]] std::string in_words(const Verdict& verdict);
+
+struct ChoiceOptions {
+  double margin = 0.03;        ///< another way must take less by this share
+  double frames = 3;           ///< for so many frames in a row
+  double horizon_frames = 60;  ///< and pay back its change within so many, or have missed as much already
+  double trial_share = 0.01;   ///< of the time goes into trials at most; 0: none
+  double trial_frames = 12;    ///< how long one takes
+  double trial_reach = 1.3;    ///< only of ways predicted to take at most this much more
+  double trial_again_frames = 600;  ///< a way is tried again after so many
+};
+
+/// Hysteresis, and trials. A change soon after a change doubles what the next has to bring (up to 16 times),
+/// which wears off.
+class Choice {
+ public:
+  explicit Choice(const ChoiceOptions& options = {}) : options_(options) {}
+
+  struct Decision {
+    Verdict verdict;
+    std::size_t take =
+        0;  ///< index of the offer to take: the present one, or another one now (or to prepare)
+    bool trial = false;
+  };
+  /// `elapsed`: frames since the last decision. `correction`: what was measured, null when nothing is
+  /// learned.
+  [[nodiscard]] Decision decide(std::span<const Offer> offers, std::size_t present, std::uint32_t elapsed,
+                                const Correction* correction);
+  /// A decision was carried out. (One that asks for a way that has to be prepared is repeated until then.)
+  void changed(const Decision& decision);
+
+  [[nodiscard]] std::uint32_t since_change() const { return static_cast<std::uint32_t>(since_change_); }
+
+ private:
+  [[nodiscard]] bool worth_a_trial(const Offer& now, const Offer& other, const Correction& correction) const;
+  /// What speaks against a change; nothing: it is to be made.
+  [[nodiscard]] std::optional<Reason> objection(const Offer& now, const Offer& other, std::size_t number,
+                                                double elapsed);
+  void pass(double elapsed, double frame_s);
+
+  ChoiceOptions options_;
+  std::size_t wanted_ = 0;
+  double wanted_frames_ = 0;
+  double missed_s_ = 0;  // by not changing to what is wanted
+  double since_change_ = 1e6;
+  double since_trial_ = 1e6;
+  double penalty_ = 0;
+  double trial_left_ = 0;  // frames
+  double trial_purse_s_ = 0;
+  bool after_trial_ = false;
+};
+
+}  // namespace scenegen::render::model

@@ -1,0 +1,115 @@
+#include "render/model/experience.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/model/octree_size.h"
+
+namespace scenegen::render::model {
+namespace {
+
+Load scaled(Load load, double by) {
+  load.draws *= by;
+  load.vertices *= by;
+  load.fragments *= by;
+  return load;
+}
+
+double share(double part, double all) {
+  return all > 0.0 ? std::clamp(part / all, 0.0, 1.0) : 0.0;
+}
+
+}  // namespace
+
+void SlowMean::add(double value) {
+  const double most = std::max(floor_, leap_ * mean_);
+  const double counted = std::min(value, most);
+  mean_ = any_ ? mean_ + weight_ * (counted - mean_) : counted;
+  any_ = true;
+}
+
+double different_among(double count, double sampled, double different) {
+  if (sampled <= 0.0 || different <= 0.0) return 0.0;
+  if (sampled >= count) return different;
+  // Of p places, m things fall into p (1 - exp(-m / p)): p by bisection.
+  const auto seen = [](double places, double things) { return places * -std::expm1(-things / places); };
+  double low = different;
+  double high = 1e9;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = std::sqrt(low * high);
+    (seen(middle, sampled) < different ? low : high) = middle;
+  }
+  return std::min(seen(low, count), different * count / sampled);
+}
+
+void Experience::learn(const FrameFacts& f) {
+  if (f.exact_octree && f.chunks > 0.0) {
+    visits_ = f.nodes_visited / f.chunks;
+    tests_ = f.boxes_tested / f.chunks;
+    if (f.in_frustum.draws > 0.0) excess_ = std::clamp(f.in_chunks.draws / f.in_frustum.draws, 1.0, 3.0);
+  }
+  if (f.exact_queries && f.chunks > 0.0) {
+    queried_ = true;
+    asked_ = share(f.asked, f.chunks);
+    asked_fragments_ = f.in_chunks.fragments > 0.0 ? f.asked_fragments / f.in_chunks.fragments : 0.0;
+    chunks_hidden_ = share(f.chunks_hidden, f.chunks);
+    draws_hidden_ = share(f.hidden.draws, f.in_chunks.draws);
+    vertices_hidden_ = share(f.hidden.vertices, f.in_chunks.vertices);
+    fragments_hidden_ = share(f.hidden.fragments, f.in_chunks.fragments);
+  }
+}
+
+void Experience::fill_octree(FrameFacts& f, std::uint32_t per_node, double chunks_touched) const {
+  const auto objects = static_cast<std::uint64_t>(std::max(0.0, f.visible_slots));
+  f.height = octree_height(objects, per_node);
+  const double nodes = octree_nodes(objects, per_node);  // (3.2), of the whole scene
+  const double seen = share(excess_ * f.in_frustum.draws, f.visible_slots);
+  f.in_chunks = scaled(f.in_frustum, share(f.in_frustum.draws, f.visible_slots) > 0.0
+                                         ? seen / share(f.in_frustum.draws, f.visible_slots)
+                                         : 1.0);
+  // c_n of (3.15): chunks are rarely full.
+  const double c_n = std::min(fill_ * per_node, std::max(1.0, f.visible_slots));
+  f.chunks = std::min(std::ceil(f.in_chunks.draws / c_n), std::max(nodes / fill_, 1.0));
+  if (f.in_chunks.draws <= 0.0) f.chunks = 0.0;
+  f.nodes_visited = visits_ * f.chunks + f.height;
+  f.boxes_tested = tests_ * f.chunks + f.height;
+  f.chunks_rerecorded = std::min(f.chunks, chunks_touched * seen);
+  f.draws_rerecorded = std::min(f.in_chunks.draws, f.chunks_rerecorded * c_n);
+}
+
+void Experience::fill_queries(FrameFacts& f) const {
+  if (queried_) {
+    f.asked = asked_ * f.chunks;
+    f.asked_fragments = asked_fragments_ * f.in_chunks.fragments;
+    f.chunks_hidden = chunks_hidden_ * f.chunks;
+    f.hidden = {draws_hidden_ * f.in_chunks.draws, vertices_hidden_ * f.in_chunks.vertices,
+                fragments_hidden_ * f.in_chunks.fragments, f.in_chunks.textured_share, 0};
+    return;
+  }
+  // Never asked: of k layers over the picture, all but the first two or so could be hidden.
+  const Shaded shaded = shaded_fragments(f.in_chunks, f.screen_pixels);
+  const double covered = shaded.covered_share * f.screen_pixels;
+  const double layers = covered > 0.0 ? f.in_chunks.fragments / covered : 1.0;
+  const double hidden = std::clamp(1.0 - 2.0 / layers, 0.0, 0.8);
+  f.chunks_hidden = hidden * f.chunks;
+  f.hidden = scaled(f.in_chunks, hidden);
+  f.asked = std::min(f.chunks, 1.2 * f.chunks_hidden);
+  f.asked_fragments = 1.2 * f.hidden.fragments;
+}
+
+void Experience::fill_unknown(FrameFacts& f, std::uint32_t per_node, double chunks_touched) const {
+  if (!f.exact_inline && f.exact_octree && f.in_frustum.draws <= 0.0)
+    f.in_frustum = scaled(f.in_chunks, 1.0 / excess_);
+  if (!f.exact_octree) fill_octree(f, per_node, chunks_touched);
+  if (!f.exact_queries) fill_queries(f);
+  // If everything was asked about, at least as much would be hidden.
+  if (f.all_chunks_hidden <= 0.0) {
+    f.all_chunks_hidden = f.chunks_hidden;
+    f.all_hidden = f.hidden;
+    f.all_asked_fragments = f.in_chunks.fragments;
+  }
+  if (f.slots_hidden.draws <= 0.0)
+    f.slots_hidden = scaled(f.in_frustum, share(f.all_hidden.draws, f.in_chunks.draws));
+}
+
+}  // namespace scenegen::render::model

@@ -1,0 +1,416 @@
+// D 3.3: in each frame the cheapest of `inline`, `octree` and `queries` by the model, corrected by what
+// frames took. `octree` is `queries` with nothing asked: one object, which keeps one octree and its commands.
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <chrono>
+#include <cmath>
+
+#include "render/model/choice.h"
+#include "render/model/experience.h"
+#include "render/passes/pass_recording.h"
+#include "render/strategy/cached_octree.h"
+#include "render/strategy/estimate_load.h"
+#include "render/strategy/octree_choice.h"
+
+namespace scenegen::render {
+
+std::unique_ptr<Strategy> make_inline(const StrategyContext& context);
+std::unique_ptr<Strategy> make_queries(const StrategyContext& context);
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// The choice may take this share of a frame.
+constexpr double kChooseShare = 0.008;
+/// While the octree is built or brought up to date, a slice of this share of a frame, and at least so many
+/// slots, is done in each.
+constexpr double kPrepareShare = 0.25;
+constexpr std::size_t kLeastSlice = 4000;
+/// So near to being cheaper, the octree is built and kept up to date though it is not taken.
+constexpr double kNear = 1.2;
+/// Frames after a change that say nothing about steady state: commands are recorded for the first time.
+constexpr std::uint32_t kSettling = 2;
+
+/// In how many chunk-sized cells something appeared, vanished or changed its look, from a sample.
+class Touched {
+ public:
+  Touched(const DrawScene& scene, std::uint32_t per_node) : scene_(scene), per_node_(per_node) {}
+
+  [[nodiscard]] double count(const timeline::ChangeSet& changes) {
+    const std::array lists{changes.shown, changes.hidden, changes.remeshed};
+    std::size_t all = 0;
+    for (const auto& list : lists) all += list.size();
+    if (all == 0) return 0.0;
+    set_cells();
+    cells_.clear();
+    constexpr std::size_t kMost = 128;
+    const std::size_t sampled = std::min(all, kMost);
+    for (std::size_t i = 0; i < sampled; ++i) {
+      std::size_t at = (2 * i + 1) * all / (2 * sampled);
+      for (const auto& list : lists) {
+        if (at < list.size()) {
+          add(list[at]);
+          break;
+        }
+        at -= list.size();
+      }
+    }
+    std::sort(cells_.begin(), cells_.end());
+    const auto different = std::unique(cells_.begin(), cells_.end()) - cells_.begin();
+    return model::different_among(static_cast<double>(all), static_cast<double>(sampled),
+                                  static_cast<double>(different));
+  }
+
+ private:
+  void set_cells() {
+    const Box& all = scene_.bounds_m();
+    const glm::dvec3 size = glm::max(glm::dvec3(all.size()), glm::dvec3(1e-3));
+    const double cells = std::max(1.0, static_cast<double>(scene_.solid_end()) / (0.7 * per_node_));
+    per_m_ = std::cbrt(cells / (size.x * size.y * size.z));
+    lo_ = all.lo;
+  }
+  void add(ObjectId id) {
+    const auto slots = scene_.slots_of(id);
+    if (slots.empty()) return;
+    const Box box = scene_.boxes().get(slots.front());
+    if (box.empty()) return;
+    const glm::dvec3 at = (glm::dvec3(box.centre()) - lo_) * per_m_;
+    std::uint64_t cell = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      cell = cell << 21U | static_cast<std::uint64_t>(std::clamp(at[axis], 0.0, 2e6));
+    cells_.push_back(cell);
+  }
+
+  const DrawScene& scene_;
+  double per_node_;
+  double per_m_ = 1;
+  glm::dvec3 lo_{0};
+  std::vector<std::uint64_t> cells_;
+};
+
+class Adaptive final : public Strategy {
+ public:
+  explicit Adaptive(const StrategyContext& context);
+  void update(const timeline::ChangeSet& changes) override;
+  void plan(const View& view) override;
+  void draw_solid(PassRecording& pass) override;
+  void draw_blended(DrawRecorder& recorder) override;
+  void resized(glm::uvec2 size) override;
+  void finished(const FrameTimes& measured) override;
+  [[nodiscard]] model::FrameFacts facts() const override { return taken().facts(); }
+  [[nodiscard]] const ChoiceReport* choice() const override { return &report_; }
+
+ private:
+  enum Way : std::size_t { flat, tree };
+  /// A frame on its way.
+  struct Drawn {
+    std::uint64_t frame = 0;
+    Way way = flat;
+    model::Method method = model::Method::inline_frustum;
+    std::uint32_t since_change = 0;
+    bool usual = false;  ///< says something about steady state
+    model::Sides predicted;
+  };
+
+  [[nodiscard]] Strategy& taken() const { return way_ == tree ? *tree_ : *flat_; }
+  [[nodiscard]] bool due() const;
+  void learn_of_last_frame();
+  void gather(const View& view);
+  void make_offers();
+  [[nodiscard]] double frame_s(const model::Sides& sides) const;
+  [[nodiscard]] double change_to_tree_s() const;
+  void decide(const View& view);
+  void force(const View& view);
+  void take(Way way, const View& view);
+  /// Is the octree built, and nearly worth being taken?
+  [[nodiscard]] bool near() const {
+    return built_ && tree_->available() && offers_[tree].frame_s < kNear * offers_[flat].frame_s;
+  }
+  void prepare();
+  void expect();
+  void forward();
+
+  StrategyContext context_;
+  std::unique_ptr<Strategy> flat_;
+  std::unique_ptr<CachedOctree> tree_;
+  std::uint32_t per_node_;
+  Way way_ = flat;
+  model::PredictionOptions predicting_;
+
+  model::Choice choice_;
+  model::Correction correction_;
+  model::Experience experience_;
+  Touched touched_;
+  model::SlowMean changed_{64}, touched_chunks_{4}, rerecorded_draws_{256};
+  double last_changed_ = 0;
+
+  model::FrameFacts facts_;  // at the last decision, in steady state
+  double stale_draws_ = 0;   // of kept commands in the frustum, at the last decision
+  std::array<model::Offer, 2> offers_;
+  std::array<model::Sides, 2> raw_;  // not corrected
+  ChoiceReport report_;
+
+  std::uint64_t frame_ = 0;
+  std::uint64_t decided_frame_ = 0;
+  std::uint32_t since_change_ = 1000;
+  double choose_s_ = 0;  // mean
+  std::uint32_t passes_ = 0;
+  bool preparing_ = false;
+  bool built_ = false;
+  std::array<Drawn, 8> drawn_;
+  std::array<std::size_t, 2> warned_{};
+};
+
+Adaptive::Adaptive(const StrategyContext& context)
+    : context_(context),
+      flat_(make_inline(context)),
+      per_node_(choose_objects_per_node(context).value_or(kObjectsPerNode)),
+      touched_(context.scene, per_node_) {
+  StrategyContext in_slices = context;
+  in_slices.octree_in_slices = true;
+  std::unique_ptr<Strategy> made = make_queries(in_slices);
+  assert(dynamic_cast<CachedOctree*>(made.get()) != nullptr);
+  tree_.reset(static_cast<CachedOctree*>(made.release()));
+  predicting_.frames_in_flight = context.frames_in_flight;
+  predicting_.indirect_nodes = indirect_nodes(context);
+  predicting_.exact = !context.options.late_visibility;
+  report_.used = "inline";
+  forward();
+}
+
+void Adaptive::update(const timeline::ChangeSet& changes) {
+  flat_->update(changes);
+  way_ == tree ? tree_->update(changes) : tree_->note(changes);
+  last_changed_ = static_cast<double>(changes.count());
+  changed_.add(last_changed_);
+  touched_chunks_.add(touched_.count(changes));
+}
+
+/// As often as the choice keeps to its share of a frame.
+bool Adaptive::due() const {
+  if (preparing_ || frame_ <= 2 || since_change_ < 2 * kSettling) return true;
+  const double share = kChooseShare * std::max(1e-6, offers_[way_].frame_s);
+  return static_cast<double>(frame_ - decided_frame_) >= std::min(60.0, choose_s_ / share);
+}
+
+void Adaptive::plan(const View& view) {
+  ++frame_;
+  ++since_change_;
+  learn_of_last_frame();
+  if (way_ == tree && !tree_->available()) way_ = flat;  // memory ran out while it drew
+  taken().plan(view);
+  report_.choose_s = 0;
+  if (context_.options.change_every != 0) {
+    force(view);
+  } else if (due()) {
+    if (way_ == flat && (preparing_ || near())) prepare();
+    const auto start = Clock::now();
+    gather(view);
+    make_offers();
+    report_.choose_s = seconds_since(start);
+    decide(view);
+    choose_s_ += 0.2 * (report_.choose_s - choose_s_);
+  }
+  passes_ = 0;
+  counters_ = taken().counters();
+  forward();
+}
+
+void Adaptive::learn_of_last_frame() {
+  if (way_ == tree && passes_ > 0 && since_change_ > kSettling)
+    rerecorded_draws_.add(tree_->rerecorded_draws());
+}
+
+/// What there is to do in this frame, in both ways. The present way has planned it.
+void Adaptive::gather(const View& view) {
+  facts_ = {};
+  stale_draws_ = 0;
+  if (way_ == flat) {
+    facts_ = flat_->facts();
+    if (tree_->available() && built_ && !tree_->behind()) {
+      tree_->plan(view);
+      model::FrameFacts kept;
+      tree_->foresee(kept);
+      kept.objects = facts_.objects;
+      kept.visible_slots = facts_.visible_slots;
+      kept.screen_pixels = facts_.screen_pixels;
+      kept.visible = facts_.visible;
+      kept.in_frustum = facts_.in_frustum;
+      kept.blended = facts_.blended;
+      kept.exact_inline = kept.exact_octree = true;
+      facts_ = kept;
+      stale_draws_ = facts_.draws_rerecorded;
+    }
+  } else {
+    facts_ = tree_->facts();
+  }
+  facts_.changed = changed_.value();
+  if (context_.shadows) {
+    facts_.shadow_slots = facts_.visible.draws;
+    facts_.shadow_vertices = facts_.visible.vertices;
+  }
+  experience_.learn(facts_);
+  experience_.fill_unknown(facts_, per_node_, touched_chunks_.value());
+  if (way_ == tree) {
+    facts_.draws_rerecorded = rerecorded_draws_.value();
+  } else if (facts_.exact_octree) {
+    const double seen = facts_.in_chunks.draws / std::max(1.0, facts_.visible_slots);
+    facts_.draws_rerecorded =
+        std::min(facts_.in_chunks.draws, touched_chunks_.value() * seen * 0.7 * per_node_);
+  } else {
+    stale_draws_ = facts_.in_chunks.draws;
+  }
+}
+
+double Adaptive::frame_s(const model::Sides& sides) const {
+  model::TimeUnits units;
+  units.empty_frame = context_.frames_in_flight <= 1 ? context_.costs.latency_s : 0.0;
+  units.overlap = context_.costs.frame_overlap;
+  return model::frame_s(sides.cpu_s, sides.gpu_s, context_.frames_in_flight, units);
+}
+
+/// What is put off is done, and what is not fresh in the frustum recorded.
+double Adaptive::change_to_tree_s() const {
+  const model::UnitCosts& costs = context_.costs;
+  return static_cast<double>(tree_->pending()) * std::max(1.0, facts_.height) * costs.intersect_s +
+         stale_draws_ * costs.record_kept_s;
+}
+
+void Adaptive::make_offers() {
+  using model::Method;
+  const auto sides = [&](Method method) {
+    const model::Prediction p = model::predict(method, facts_, context_.costs, predicting_);
+    return model::Sides{p.cpu_s, p.gpu_s};
+  };
+  const auto corrected = [&](Method method, const model::Sides& raw) {
+    return frame_s(context_.options.correction ? correction_.corrected(method, raw) : raw);
+  };
+  raw_[flat] = sides(Method::inline_frustum);
+  offers_[flat] = {Method::inline_frustum, corrected(Method::inline_frustum, raw_[flat]), 0.0, true, true};
+  // The tree's strategy asks as many queries as pay, none if none does.
+  Method method = Method::octree;
+  raw_[tree] = sides(method);
+  double tree_s = corrected(method, raw_[tree]);
+  const model::Sides asking = sides(Method::queries);
+  const double asking_s = corrected(Method::queries, asking);
+  if (way_ == tree ? facts_.asked > 0.0 : asking_s < tree_s) {
+    method = Method::queries;
+    raw_[tree] = asking;
+    tree_s = asking_s;
+  }
+  const bool ready = built_ && tree_->pending() <= kLeastSlice;
+  offers_[tree] = {method, tree_s, way_ == tree ? 0.0 : change_to_tree_s(), tree_->available(), ready};
+}
+
+void Adaptive::decide(const View& view) {
+  const auto elapsed = static_cast<std::uint32_t>(frame_ - decided_frame_);
+  decided_frame_ = frame_;
+  const auto start = Clock::now();
+  const model::Choice::Decision decision =
+      choice_.decide(offers_, way_, elapsed, context_.options.correction ? &correction_ : nullptr);
+  report_.verdict = decision.verdict;
+  report_.choose_s += seconds_since(start);
+  const auto wanted = static_cast<Way>(decision.take);
+  preparing_ = wanted == tree && way_ == flat && !offers_[tree].ready;
+  if (wanted != way_ && !preparing_) {
+    take(wanted, view);
+    choice_.changed(decision);
+  }
+  expect();
+}
+
+/// A slice of what was put off, while something else draws.
+void Adaptive::prepare() {
+  const double slot_s = std::max(20e-9, context_.costs.intersect_s * std::max(1.0, facts_.height));
+  const double slots = kPrepareShare * offers_[flat].frame_s / slot_s;
+  if (tree_->catch_up(std::max(kLeastSlice, static_cast<std::size_t>(std::min(slots, 1e9))))) built_ = true;
+}
+
+void Adaptive::take(Way way, const View& view) {
+  way_ = way;
+  since_change_ = 0;
+  preparing_ = false;
+  if (way == tree) {
+    while (!tree_->catch_up(std::size_t{1} << 30)) {
+    }
+    built_ = true;
+  }
+  taken().plan(view);
+}
+
+void Adaptive::force(const View& view) {
+  if (frame_ % context_.options.change_every == 0 && tree_->available()) {
+    take(way_ == tree ? flat : tree, view);
+  } else if (way_ == flat && frame_ % 2 == 0) {
+    (void)tree_->catch_up(100);
+  }
+  const model::Method method = way_ == tree ? model::Method::octree : model::Method::inline_frustum;
+  report_.verdict = {method, method, 0, 0, model::Reason::forced};
+}
+
+/// Remembers what this frame should take, to compare it with what it took.
+void Adaptive::expect() {
+  model::FrameFacts now = facts_;
+  now.changed = last_changed_;
+  const model::Method method = offers_[way_].method;
+  const model::Prediction p = model::predict(method, now, context_.costs, predicting_);
+  drawn_[frame_ % drawn_.size()] = {frame_,
+                                    way_,
+                                    method,
+                                    since_change_,
+                                    since_change_ >= kSettling && !preparing_ && frame_ > kSettling,
+                                    {p.cpu_s, p.gpu_s}};
+}
+
+void Adaptive::draw_solid(PassRecording& pass) {
+  assert(pass.context().frame.serial == frame_);
+  Drawn& drawn = drawn_[frame_ % drawn_.size()];
+  if (drawn.frame != frame_) drawn = {frame_, way_, model::Method::inline_frustum, since_change_, false, {}};
+  ++passes_;
+  taken().draw_solid(pass);
+  counters_ = taken().counters();
+  if (way_ == tree) report_.used = counters_.queries > 0 ? "queries" : "octree";
+  if (way_ == flat || !tree_->available()) report_.used = "inline";
+  forward();
+}
+
+void Adaptive::draw_blended(DrawRecorder& recorder) {
+  taken().draw_blended(recorder);
+  counters_ = taken().counters();
+}
+
+void Adaptive::resized(glm::uvec2 size) {
+  context_.size = size;
+  flat_->resized(size);
+  tree_->resized(size);
+}
+
+void Adaptive::finished(const FrameTimes& measured) {
+  const Drawn& drawn = drawn_[measured.serial % drawn_.size()];
+  if (drawn.frame != measured.serial) return;
+  (drawn.way == tree ? static_cast<Strategy&>(*tree_) : *flat_).finished(measured);
+  if (drawn.usual)
+    correction_.measured(drawn.method, drawn.since_change, drawn.predicted, {measured.cpu_s, measured.gpu_s});
+}
+
+void Adaptive::forward() {
+  const std::array<const Strategy*, 2> ways{flat_.get(), tree_.get()};
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    const std::vector<std::string>& all = ways[i]->warnings();
+    for (; warned_[i] < all.size(); ++warned_[i]) warnings_.push_back(all[warned_[i]]);
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<Strategy> make_adaptive(const StrategyContext& context) {
+  return std::make_unique<Adaptive>(context);
+}
+
+}  // namespace scenegen::render

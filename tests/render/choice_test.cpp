@@ -1,0 +1,268 @@
+// Choosing between ways of drawing: hysteresis, correction, trials, and what is guessed of ways not taken.
+#include "render/model/choice.h"
+
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <vector>
+
+#include "render/model/experience.h"
+#include "scene/random.h"
+
+using namespace scenegen;
+using namespace scenegen::render::model;
+
+namespace {
+
+/// Two ways whose costs are what `truth` says; frames are measured with noise.
+struct Machine {
+  Random random{11, "machine"};
+  std::uint64_t draws = 0;
+  double noise = 0;  ///< +- so much of a frame
+  double slow = 1;   ///< somebody else uses it too
+  double take(double seconds) {
+    const double u = static_cast<double>(random.unit(draws++));
+    const double hitch = draws % 97 == 0 ? 5.0 : 1.0;
+    return seconds * slow * hitch * (1.0 + noise * (2.0 * u - 1.0));
+  }
+};
+
+struct Replay {
+  Choice choice;
+  Correction correction;
+  std::size_t present = 0;
+  std::uint32_t since = 1000;
+  std::size_t changes = 0;
+  double spent_s = 0;
+
+  explicit Replay(const ChoiceOptions& options) : choice(options) {}
+
+  /// `predicted` and `real`: of inline and octree, processor seconds; the device takes 1 ms.
+  void frame(Machine& machine, const std::array<double, 2>& predicted, const std::array<double, 2>& real,
+             double change_s = 0.01, bool learn = true) {
+    constexpr std::array kMethods{Method::inline_frustum, Method::octree};
+    std::array<Offer, 2> offers;
+    for (std::size_t i = 0; i < 2; ++i) {
+      Sides sides{predicted[i], 1e-3};
+      if (learn) sides = correction.corrected(kMethods[i], sides);
+      offers[i] = {kMethods[i], std::max(sides.cpu_s, sides.gpu_s), i == 1 ? change_s : 0.0, true, true};
+    }
+    const Choice::Decision d = choice.decide(offers, present, 1, learn ? &correction : nullptr);
+    ++since;
+    if (d.take != present) {
+      present = d.take;
+      since = 0;
+      ++changes;
+      spent_s += offers[present].change_s;
+      choice.changed(d);
+    }
+    const double took = machine.take(real[present]);
+    spent_s += took;
+    if (learn && since >= 2)
+      correction.measured(kMethods[present], since, {predicted[present], 1e-3}, {took, 1e-3});
+  }
+};
+
+}  // namespace
+
+TEST_CASE("the cheaper way is taken, after a few frames, when it pays back its change") {
+  Machine machine;
+  Replay replay({.trial_share = 0});
+  for (int i = 0; i < 2; ++i) replay.frame(machine, {5e-3, 2e-3}, {5e-3, 2e-3});
+  CHECK(replay.present == 0);  // patience
+  for (int i = 0; i < 5; ++i) replay.frame(machine, {5e-3, 2e-3}, {5e-3, 2e-3});
+  CHECK(replay.present == 1);
+  CHECK(replay.changes == 1);
+  // A gain within the margin is not worth a change.
+  for (int i = 0; i < 500; ++i) replay.frame(machine, {1.95e-3, 2e-3}, {1.95e-3, 2e-3});
+  CHECK(replay.changes == 1);
+}
+
+TEST_CASE("a change that costs more than it will bring is put off until as much was missed") {
+  Machine machine;
+  Replay replay({.trial_share = 0});
+  const std::array costs{2.2e-3, 2e-3};
+  for (int i = 0; i < 100; ++i) replay.frame(machine, costs, costs, 0.1);  // 0.2 ms * 60 < 100 ms
+  CHECK(replay.changes == 0);
+  for (int i = 0; i < 500; ++i) replay.frame(machine, costs, costs, 0.1);
+  CHECK(replay.changes == 1);
+}
+
+TEST_CASE("noise, hitches and a machine that others use make no oscillation") {
+  for (const double other : {1.0, 1.02, 1.1, 0.98, 0.9}) {
+    INFO(other);
+    Machine machine;
+    machine.noise = 0.3;
+    Replay replay({.trial_share = 0});
+    for (int i = 0; i < 5000; ++i) {
+      machine.slow = i % 1000 < 500 ? 1.0 : 1.8;
+      replay.frame(machine, {4e-3, 4e-3 * other}, {4e-3, 4e-3 * other});
+    }
+    CHECK(replay.changes <= 3);
+    if (other < 0.95) CHECK(replay.present == 1);
+    if (other > 1.05) CHECK(replay.present == 0);
+  }
+}
+
+TEST_CASE("costs that alternate faster than a change pays are answered by staying") {
+  Machine machine;
+  Replay replay({.trial_share = 0});
+  for (int i = 0; i < 2000; ++i) {
+    const bool first = i / 10 % 2 == 0;
+    replay.frame(machine, {first ? 4e-3 : 5e-3, first ? 5e-3 : 4e-3}, {4.5e-3, 4.5e-3}, 0.02);
+  }
+  CHECK(replay.changes < 40);  // there are 200 turns
+}
+
+TEST_CASE("phases are followed: each lasting change is answered by one of ours") {
+  Machine machine;
+  machine.noise = 0.2;
+  Replay replay({});
+  double best_s = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const bool busy = i / 500 % 2 == 1;
+    const std::array costs{busy ? 3e-3 : 6e-3, busy ? 9e-3 : 2e-3};
+    replay.frame(machine, costs, costs);
+    best_s += std::min(costs[0], costs[1]);
+  }
+  CHECK(replay.changes >= 8);
+  CHECK(replay.changes <= 12);
+  CHECK(replay.spent_s < 1.12 * best_s);  // hitches are 4 %
+}
+
+TEST_CASE("what the model gets wrong is learned from frames that were taken") {
+  Machine machine;
+  machine.noise = 0.1;
+  // The octree is thought to be the cheaper, and is not.
+  Replay replay({});
+  for (int i = 0; i < 3000; ++i) replay.frame(machine, {4e-3, 3e-3}, {4e-3, 4.8e-3});
+  CHECK(replay.present == 0);
+  CHECK(replay.changes <= 8);
+  // The other way round: a trial finds out.
+  Replay other({});
+  for (int i = 0; i < 3000; ++i) other.frame(machine, {4e-3, 4.4e-3}, {4e-3, 3e-3});
+  CHECK(other.present == 1);
+  CHECK(other.changes <= 4);
+  // Without correction nobody finds out, and nobody tries.
+  Replay blind({});
+  for (int i = 0; i < 3000; ++i) blind.frame(machine, {4e-3, 4.4e-3}, {4e-3, 3e-3}, 0.01, false);
+  CHECK(blind.changes == 0);
+}
+
+TEST_CASE("the correction is bounded, slow, and tells the machine from the way") {
+  Correction c;
+  const Sides predicted{1e-3, 2e-3};
+  CHECK(c.corrected(Method::octree, predicted).cpu_s == 1e-3);
+  CHECK(!c.knows(Method::octree));
+  c.measured(Method::inline_frustum, 5, predicted, {100e-3, -1});
+  CHECK(c.corrected(Method::inline_frustum, predicted).cpu_s < 1.1e-3);  // one hitch
+  CHECK(c.corrected(Method::inline_frustum, predicted).gpu_s == 2e-3);   // not measured
+  for (int i = 0; i < 500; ++i) c.measured(Method::inline_frustum, 100, predicted, {9e-3, 0.1e-3});
+  CHECK(c.corrected(Method::inline_frustum, predicted).cpu_s == Approx(2e-3));
+  CHECK(c.corrected(Method::inline_frustum, predicted).gpu_s == Approx(1e-3));
+  // What held for one way holds for others, until they are known.
+  CHECK(c.corrected(Method::octree, predicted).cpu_s == Approx(2e-3));
+
+  Correction d;
+  for (int i = 0; i < 300; ++i) d.measured(Method::inline_frustum, 100, predicted, {1e-3, 2e-3});
+  for (std::uint32_t i = 2; i < 300; ++i) d.measured(Method::octree, i, predicted, {1.5e-3, 2e-3});
+  CHECK(d.corrected(Method::octree, predicted).cpu_s == Approx(1.5e-3).epsilon(0.05));
+  // Most of the jump was the octree's own.
+  CHECK(d.corrected(Method::inline_frustum, predicted).cpu_s < 1.15e-3);
+  CHECK(d.knows(Method::queries));  // by its relative
+  CHECK(d.corrected(Method::queries, predicted).cpu_s ==
+        Approx(d.corrected(Method::octree, predicted).cpu_s));
+  CHECK(!d.knows(Method::inline_queries));
+}
+
+TEST_CASE("a way that is being prepared is asked for, not taken; one that is not possible never") {
+  Choice choice;
+  std::array<Offer, 2> offers{Offer{Method::inline_frustum, 5e-3, 0, true, true},
+                              Offer{Method::octree, 1e-3, 0.02, true, false}};
+  Choice::Decision d;
+  for (int i = 0; i < 5; ++i) d = choice.decide(offers, 0, 1, nullptr);
+  CHECK(d.take == 1);
+  CHECK(d.verdict.reason == Reason::preparing);
+  CHECK(d.verdict.used == Method::inline_frustum);
+  CHECK(in_words(d.verdict) == "inline: 5.00 ms against octree 1.00 ms, which is being prepared");
+  offers[1].ready = true;
+  d = choice.decide(offers, 0, 1, nullptr);
+  CHECK(d.take == 1);
+  CHECK(in_words(d.verdict) == "octree: 1.00 ms against inline 5.00 ms");
+  offers[1].possible = false;
+  d = choice.decide(offers, 0, 1, nullptr);
+  CHECK(d.take == 0);
+  CHECK(in_words(d.verdict) == "inline: 5.00 ms, no other way is possible");
+  // What was taken and is no longer possible is left at once.
+  d = choice.decide(offers, 1, 1, nullptr);
+  CHECK(d.take == 0);
+}
+
+TEST_CASE("a slow mean follows what lasts, and a seek does not throw it") {
+  SlowMean mean(10);
+  for (int i = 0; i < 100; ++i) mean.add(20);
+  CHECK(mean.value() == Approx(20).margin(0.01));
+  mean.add(100'000);  // a jump to another time
+  CHECK(mean.value() < 30);
+  for (int i = 0; i < 60; ++i) mean.add(5000);  // much changes now
+  CHECK(mean.value() > 4500);
+}
+
+TEST_CASE("how many different ones there are is guessed from a sample") {
+  CHECK(different_among(100, 100, 37) == 37);
+  CHECK(different_among(10'000, 100, 1) == Approx(1).margin(0.1));
+  CHECK(different_among(10'000, 100, 100) > 3000);  // all differ: most of them do
+  const Random random{3, "places"};
+  std::vector<bool> seen(500), sampled(500);
+  for (std::uint64_t i = 0; i < 2000; ++i) {
+    const auto place = static_cast<std::size_t>(random.unit(i) * 500.0F);
+    seen[place] = true;
+    if (i % 10 == 0) sampled[place] = true;
+  }
+  const auto count = [](const std::vector<bool>& v) {
+    return static_cast<double>(std::count(v.begin(), v.end(), true));
+  };
+  CHECK(different_among(2000, 200, count(sampled)) == Approx(count(seen)).epsilon(0.2));
+}
+
+TEST_CASE("(3.14) what an octree that is not built would have is guessed; once seen, ratios are remembered") {
+  FrameFacts facts;
+  facts.screen_pixels = 1e6;
+  facts.visible_slots = 100'000;
+  facts.visible = {100'000, 3.6e6, 5e6, 0, 0};
+  facts.in_frustum = {20'000, 720'000, 4e6, 0, 0};
+  facts.exact_inline = true;
+  Experience experience;
+  FrameFacts guess = facts;
+  experience.fill_unknown(guess, 200, 50);
+  CHECK(guess.in_chunks.draws > 20'000);
+  CHECK(guess.in_chunks.draws < 30'000);
+  CHECK(guess.chunks == Approx(guess.in_chunks.draws / 140).epsilon(0.01));
+  CHECK(guess.chunks_rerecorded == Approx(50 * guess.in_chunks.draws / 100'000));
+  CHECK(guess.height == Approx(std::log2(500.0) / 3.0));
+  CHECK(guess.chunks_hidden > 0);  // four layers and more
+  CHECK(guess.chunks_hidden < guess.chunks);
+
+  FrameFacts seen = facts;
+  seen.chunks = 100;
+  seen.in_chunks = {40'000, 1.44e6, 6e6, 0, 0};
+  seen.nodes_visited = 300;
+  seen.boxes_tested = 400;
+  seen.asked = 10;
+  seen.chunks_hidden = 50;
+  seen.hidden = {30'000, 1e6, 4e6, 0, 0};
+  seen.exact_octree = seen.exact_queries = true;
+  experience.learn(seen);
+  FrameFacts again = facts;
+  experience.fill_unknown(again, 200, 50);
+  CHECK(again.in_chunks.draws == Approx(40'000));
+  CHECK(again.nodes_visited == Approx(3 * again.chunks + again.height));
+  CHECK(again.hidden.draws == Approx(30'000));
+  CHECK(again.asked == Approx(0.1 * again.chunks));
+  // What is exact is left alone.
+  FrameFacts exact = seen;
+  experience.fill_unknown(exact, 200, 50);
+  CHECK(exact.chunks == 100);
+  CHECK(exact.hidden.draws == 30'000);
+}
