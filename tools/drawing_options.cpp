@@ -58,6 +58,7 @@ render::RendererOptions DrawingOptions::renderer() const {
   o.how.octree_bytes = octree_mib << 20;
   o.how.late_visibility = late_visibility;
   o.how.node_form = node_form;
+  o.how.correction = !no_correction;
   o.shadows = shadows;
   o.full_barriers = full_barriers;
   return o;
@@ -85,6 +86,8 @@ void add_drawing_options(Options& options, DrawingOptions& d, Value strategy, Va
               "what --strategy octree may take; without room for it, inline is used");
   options.flag("--late-visibility", d.late_visibility,
                "queries: believe results of earlier frames; what comes into view may appear frames too late");
+  options.flag("--no-correction", d.no_correction,
+               "adaptive: choose by the model alone, not corrected by what earlier frames took");
   options.add("--frames-in-flight", std::move(frames_in_flight),
               "frames at work at once; 1: processor and device one after the other");
   options.add("--barriers", choice_value<bool>(d.full_barriers, {{"exact", false}, {"full", true}}),

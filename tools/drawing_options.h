@@ -21,6 +21,7 @@ struct DrawingOptions {
   std::uint64_t octree_mib = 1024;
   bool late_visibility = false;
   render::NodeForm node_form = render::NodeForm::automatic;
+  bool no_correction = false;
   bool full_barriers = false;
   std::string device;
   bool list_devices = false;

@@ -40,6 +40,7 @@ std::span<const StageField> stage_fields() {
       StageField{"update", &FrameReport::update_ms, true},
       StageField{"updateOctree", &FrameReport::update_octree_ms, false},
       StageField{"cull", &FrameReport::plan_ms, true},
+      StageField{"choose", &FrameReport::choose_ms, false},
       StageField{"record", &FrameReport::record_ms, true},
       StageField{"upload", &FrameReport::upload_ms, false},
       StageField{"keep", &FrameReport::keep_ms, false},
@@ -52,6 +53,27 @@ std::span<const StageField> stage_fields() {
       StageField{"readback", &FrameReport::readback_ms, false},
   };
   return kFields;
+}
+
+void add_choice(const FrameReport& report, nlohmann::ordered_json& to) {
+  using nlohmann::ordered_json;
+  namespace model = render::model;
+  to["strategyUsed"] = report.strategy_used;
+  if (report.verdict.used_s > 0.0) {
+    const model::Verdict& v = report.verdict;
+    to["reason"] = model::in_words(v);
+    to["sidesMs"] = {{model::name_of(v.used), v.used_s * 1e3}};
+    if (v.rival != v.used) to["sidesMs"][std::string(model::name_of(v.rival))] = v.rival_s * 1e3;
+  }
+  if (report.predicted.front().frame_s <= 0.0) return;
+  ordered_json& all = to["predicted"] = ordered_json::array();
+  for (std::size_t m = 0; m < report.predicted.size(); ++m) {
+    const model::Prediction& p = report.predicted[m];
+    all.push_back({{"name", model::name_of(static_cast<model::Method>(m))},
+                   {"cpuMs", p.cpu_s * 1e3},
+                   {"gpuMs", p.gpu_s * 1e3},
+                   {"totalMs", p.frame_s * 1e3}});
+  }
 }
 
 }  // namespace scenegen::tools

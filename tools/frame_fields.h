@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string_view>
 
@@ -22,5 +23,9 @@ struct StageField {
   bool cpu;  ///< the processor works in it, and it is part of no other stage
 };
 [[nodiscard]] std::span<const StageField> stage_fields();
+
+/// Adds which way of drawing was taken, why, and what every way was predicted to take (if that was asked
+/// for).
+void add_choice(const render::FrameReport& report, nlohmann::ordered_json& to);
 
 }  // namespace scenegen::tools

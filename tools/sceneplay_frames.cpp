@@ -97,6 +97,7 @@ Result<Encoded> write_frame(const FramesRequest& request, std::size_t number,
 ordered_json frame_json(const render::FrameReport& r, double seek_ms, double encode_ms) {
   ordered_json out{{"timeS", r.time_s}};
   for (const CounterField& field : counter_fields()) out[std::string(field.name)] = r.*field.value;
+  add_choice(r, out);
   ordered_json& stages = out["stagesMs"] = {{"seek", seek_ms}};
   for (const StageField& field : stage_fields()) {
     const double ms = r.*field.value;
@@ -217,6 +218,7 @@ render::RendererOptions renderer_options(const FramesRequest& request) {
   render::RendererOptions o = request.drawing.renderer();
   o.outputs = {true, request.ids, request.depth};
   o.strategy = request.strategy;
+  o.predictions = !request.report.empty();
   o.frames_in_flight = request.frames_in_flight;
   return o;
 }

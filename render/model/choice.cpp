@@ -91,7 +91,7 @@ std::string in_words(const Verdict& v) {
     case Reason::preparing:
       return text + ", which is being prepared";
     case Reason::trial:
-      return text + ", on trial";
+      return text + ", just taken";
     case Reason::forced:
       return text + ", forced";
     case Reason::cheaper:
@@ -180,7 +180,6 @@ Choice::Decision Choice::decide(std::span<const Offer> offers, std::size_t prese
 
 void Choice::changed(const Decision& decision) {
   if (decision.trial) {
-    trial_left_ = options_.trial_frames;
     since_trial_ = 0;
     trial_purse_s_ = 0;
     after_trial_ = true;
@@ -189,6 +188,7 @@ void Choice::changed(const Decision& decision) {
     if (since_change_ < kSoon && !after_trial_) penalty_ = std::min(2.0 * penalty_ + 1.0, 15.0);
     after_trial_ = false;
   }
+  trial_left_ = options_.trial_frames;
   since_change_ = 0;
   wanted_frames_ = 0;
   missed_s_ = 0;

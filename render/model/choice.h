@@ -61,7 +61,7 @@ enum class Reason : std::uint8_t {
   patience,   ///< another takes less, but not for long enough yet
   no_pay,     ///< another takes less, but changing to it would not pay back
   preparing,  ///< another takes less, and is being prepared, a slice a frame
-  trial,      ///< taken for some frames to measure it
+  trial,      ///< just taken: kept for some frames to measure it
   forced,     ///< by an option for tests
   alone       ///< no other is possible
 };
@@ -81,7 +81,7 @@ struct ChoiceOptions {
   double frames = 3;           ///< for so many frames in a row
   double horizon_frames = 60;  ///< and pay back its change within so many, or have missed as much already
   double trial_share = 0.01;   ///< of the time goes into trials at most; 0: none
-  double trial_frames = 12;    ///< how long one takes
+  double trial_frames = 20;    ///< how long one takes, and how long any way is kept
   double trial_reach = 1.3;    ///< only of ways predicted to take at most this much more
   double trial_again_frames = 600;  ///< a way is tried again after so many
 };

@@ -36,6 +36,8 @@ constexpr std::size_t kLeastSlice = 4000;
 constexpr double kNear = 1.2;
 /// Frames after a change that say nothing about steady state: commands are recorded for the first time.
 constexpr std::uint32_t kSettling = 2;
+/// So long it may take until queries have found out what is hidden.
+constexpr std::uint32_t kGathering = 40;
 
 /// In how many chunk-sized cells something appeared, vanished or changed its look, from a sample.
 class Touched {
@@ -150,7 +152,8 @@ class Adaptive final : public Strategy {
   model::SlowMean changed_{64}, touched_chunks_{4}, rerecorded_draws_{256};
   double last_changed_ = 0;
 
-  model::FrameFacts facts_;  // at the last decision, in steady state
+  model::FrameFacts exact_;  // at the last decision: what the present way found
+  model::FrameFacts facts_;  // the same in steady state, with guesses for the other
   double stale_draws_ = 0;   // of kept commands in the frustum, at the last decision
   std::array<model::Offer, 2> offers_;
   std::array<model::Sides, 2> raw_;  // not corrected
@@ -255,6 +258,9 @@ void Adaptive::gather(const View& view) {
     facts_.shadow_slots = facts_.visible.draws;
     facts_.shadow_vertices = facts_.visible.vertices;
   }
+  exact_ = facts_;
+  // As long as answers are being gathered they say nothing yet: what was known or guessed before still holds.
+  if (way_ == tree && since_change_ < kGathering && facts_.hidden.draws <= 0.0) facts_.exact_queries = false;
   experience_.learn(facts_);
   experience_.fill_unknown(facts_, per_node_, touched_chunks_.value());
   if (way_ == tree) {
@@ -356,9 +362,11 @@ void Adaptive::force(const View& view) {
 
 /// Remembers what this frame should take, to compare it with what it took.
 void Adaptive::expect() {
-  model::FrameFacts now = facts_;
+  model::FrameFacts now = exact_;
   now.changed = last_changed_;
-  const model::Method method = offers_[way_].method;
+  const model::Method method = way_ == flat      ? model::Method::inline_frustum
+                               : now.asked > 0.0 ? model::Method::queries
+                                                 : model::Method::octree;
   const model::Prediction p = model::predict(method, now, context_.costs, predicting_);
   drawn_[frame_ % drawn_.size()] = {frame_,
                                     way_,

@@ -140,8 +140,10 @@ model::FrameFacts CachedOctree::facts() const {
   facts.changed = static_cast<double>(changed_);
   facts.moved = static_cast<double>(moved_);
   foresee(facts);
-  facts.chunks_rerecorded = static_cast<double>(counters_.recorded) / recordings();
-  facts.draws_rerecorded = rerecorded_draws();
+  if (passes_ > 0) {  // otherwise what was foreseen stands
+    facts.chunks_rerecorded = static_cast<double>(counters_.recorded) / recordings();
+    facts.draws_rerecorded = rerecorded_draws();
+  }
   facts.exact_octree = true;
   return facts;
 }

@@ -44,7 +44,8 @@ struct Way {
 std::vector<Way> exact_ways() {
   std::vector<Way> out;
   for (const StrategyEntry& entry : strategies()) {
-    if (entry.name == "brute" || entry.name == "inline-queries") continue;
+    // What adaptive does depends on times: it has tests of its own.
+    if (entry.name == "brute" || entry.name == "inline-queries" || entry.name == "adaptive") continue;
     out.push_back({std::string(entry.name)});
     if (entry.name == "octree" || out.back().asks())
       out.push_back({std::string(entry.name), NodeForm::indirect});
@@ -153,16 +154,49 @@ TEST_CASE("adaptive draws the same however often it changes its way") {
       CHECK(d.color == 0);
       CHECK(run.warnings.empty());
       std::size_t changes = 0, flat = 0;
+      std::uint64_t queries = 0;
       for (std::size_t i = 0; i < run.frames.size(); ++i) {
         const bool now = run.frames[i].report.strategy_used == "inline";
         flat += now ? 1 : 0;
+        queries += run.frames[i].report.queries;
         changes += i > 0 && now != (run.frames[i - 1].report.strategy_used == "inline") ? 1 : 0;
       }
       CHECK(changes >= 7);
+      CHECK(queries > 100);
       CHECK(flat >= 15);
       CHECK(flat <= 25);
     }
   }
+}
+
+TEST_CASE("adaptive chooses by itself, says why, and goes on inline when memory runs out") {
+  const Path path = std::move(strategy_paths(12, 450)[3]);
+  const Run wanted = run_path(path, path_options("inline"));
+  RendererOptions options = path_options("adaptive");
+  options.predictions = true;
+  const Run run = run_path(path, options);
+  CHECK(difference(run, wanted, wanted).depth == 0);
+  CHECK(run.frames[0].report.strategy_used == "inline");  // nothing else is ready
+  for (const FrameResult& frame : run.frames) {
+    CHECK(frame.report.verdict.used_s > 0);
+    CHECK(!model::in_words(frame.report.verdict).empty());
+    for (const model::Prediction& p : frame.report.predicted) CHECK(p.frame_s > 0);
+  }
+
+  options.how.octree_bytes = 1000;
+  const Run small = run_path(path, options);
+  REQUIRE(small.warnings.size() == 1);
+  CHECK(small.warnings[0].find("--octree-memory") != std::string::npos);
+  CHECK(small.frames.back().report.verdict.reason == model::Reason::alone);
+  options = path_options("adaptive");
+  options.how.change_every = 3;
+  options.how.node_form = NodeForm::secondaries;
+  options.how.fail_after_buffers = 128;  // in the middle of the path
+  const Run failed = run_path(path, options);
+  REQUIRE(failed.warnings.size() == 1);
+  CHECK(failed.warnings[0].find("fault injected") != std::string::npos);
+  CHECK(failed.frames.back().report.strategy_used == "inline");
+  for (const Run* other : {&small, &failed}) CHECK(difference(*other, wanted, wanted).depth == 0);
 }
 
 TEST_CASE("octree keeps commands: nothing changed, nothing recorded; what changed is recorded alone") {
