@@ -21,6 +21,7 @@ struct DeviceInfo {
   std::string name;
   std::string type;    ///< "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
   std::string driver;  ///< "NVIDIA 580.65.06"
+  std::string uuid;    ///< 32 hexadecimal digits, the same for this device and driver in every process
   std::string lacks;   ///< why it cannot be used; empty when it can
 };
 

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "scene/limits.h"
+#include "tools/calibrations.h"
 
 namespace scenegen::tools {
 namespace {
@@ -90,6 +91,10 @@ void add_drawing_options(Options& options, DrawingOptions& d, Value strategy, Va
                "adaptive: choose by the model alone, not corrected by what earlier frames took");
   options.add("--frames-in-flight", std::move(frames_in_flight),
               "frames at work at once; 1: processor and device one after the other");
+  options.add(
+      "--calibration", calibration_value(d.calibration),
+      "what drawing costs here, for strategies that choose by it (docs/CALIBRATION.md); auto: as last "
+      "measured for such pictures, else a quick measurement");
   options.add("--barriers", choice_value<bool>(d.full_barriers, {{"exact", false}, {"full", true}}),
               "full: a full barrier at every step, to look for missing ones");
 }

@@ -23,6 +23,7 @@ struct DrawingOptions {
   render::NodeForm node_form = render::NodeForm::automatic;
   bool no_correction = false;
   bool full_barriers = false;
+  std::string calibration = "auto";  ///< for set_costs()
   std::string device;
   bool list_devices = false;
   bool validation = false;  ///< set by SCENEPLAY_VALIDATION=1 too

@@ -30,6 +30,7 @@ constexpr std::string_view kShortHelp =
     "\n"
     "  sceneplay frames FILE -o DIR     draws FILE to pictures, one file a frame\n"
     "  sceneplay bench FILE... -o DIR   measures how long frames take in several ways of drawing\n"
+    "  sceneplay calibrate              measures what drawing costs on this machine\n"
     "  sceneplay --list-devices         the Vulkan devices there are\n"
     "\n"
     "Example: sceneplay frames town.glb -o frames --times 25%,50%,100%\n"
@@ -43,12 +44,13 @@ int print(std::string_view text) {
 int run(std::span<const std::string> arguments) {
   if (arguments.empty()) return print(kShortHelp);
   const std::string& first = arguments.front();
+  if (first == "calibrate") return calibrate_verb(arguments.subspan(1));
   if (first == "frames") return frames_verb(arguments.subspan(1));
   if (first == "bench") return bench_verb(arguments.subspan(1));
   if (first == "--help" || first == "-h") return print(kShortHelp);
   if (first == "--version") return print("sceneplay " SCENEGEN_VERSION "\n");
   if (first == "--list-devices") return list_devices_verb();
-  const std::array<std::string, 2> verbs{"frames", "bench"};
+  const std::array<std::string, 3> verbs{"frames", "bench", "calibrate"};
   if (first.starts_with('-')) {
     const std::array<std::string, 3> options{"--help", "--version", "--list-devices"};
     return report_error({ErrorKind::usage, "", unknown_word("option", first, options)});

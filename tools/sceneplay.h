@@ -6,6 +6,7 @@
 
 namespace scenegen::tools {
 
+int calibrate_verb(std::span<const std::string> arguments);
 int frames_verb(std::span<const std::string> arguments);
 int bench_verb(std::span<const std::string> arguments);
 /// Prints the Vulkan devices there are.

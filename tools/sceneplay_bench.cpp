@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <map>
 
+#include "render/strategy_names.h"
 #include "scene/gltf/read.h"
 #include "scene/limits.h"
 #include "timeline/player.h"
 #include "tools/bench_case.h"
 #include "tools/bench_results.h"
+#include "tools/calibrations.h"
 #include "tools/drawing_options.h"
 #include "tools/frame_times.h"
 #include "tools/output.h"
@@ -110,10 +112,11 @@ ordered_json settings_json(const BenchRequest& r, const render::DeviceInfo& devi
 class Bench {
  public:
   Bench(const BenchRequest& request, std::shared_ptr<render::vkr::Device> device,
-        const render::DeviceInfo& info)
+        const render::DeviceInfo& info, std::optional<render::model::UnitCosts> costs)
       : request_(request),
         device_(std::move(device)),
         info_(info),
+        costs_(std::move(costs)),
         store_((std::filesystem::path(request.folder) / "runs").string(), settings_json(request, info)),
         progress_("bench",
                   1000 * request.files.size() * request.cameras().size() * request.frames_in_flight.size() *
@@ -225,6 +228,7 @@ class Bench {
     o.how.objects_per_node = what.way.octree_n.value_or(o.how.objects_per_node);
     o.how.node_form = what.way.form.value_or(o.how.node_form);
     o.frames_in_flight = what.frames_in_flight;
+    if (costs_) o.costs = costs_;
     return o;
   }
 
@@ -268,6 +272,7 @@ class Bench {
   const BenchRequest& request_;
   std::shared_ptr<render::vkr::Device> device_;
   render::DeviceInfo info_;
+  std::optional<render::model::UnitCosts> costs_;
   RunStore store_;
   Progress progress_;
   std::uint64_t progress_at_ = 0;
@@ -325,7 +330,15 @@ Result<void> measure(const BenchRequest& request) {
   if (auto writable = check_output_file((std::filesystem::path(request.folder) / "bench.json").string());
       !writable)
     return writable;
-  return Bench(request, *device, render::info_of(**device)).run();
+  // Once for all ways, so that they are compared under the same costs.
+  render::RendererOptions costs = request.drawing.renderer();
+  costs.shared_device = *device;
+  const auto chooses = std::find_if(request.ways.begin(), request.ways.end(), [](const BenchWay& way) {
+    return render::strategy_uses_costs(way.strategy);
+  });
+  if (chooses != request.ways.end()) costs.strategy = chooses->strategy;
+  if (auto set = set_costs(costs, request.drawing.calibration, request.quiet); !set) return set;
+  return Bench(request, *device, render::info_of(**device), std::move(costs.costs)).run();
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "scene/limits.h"
 #include "timeline/calendar.h"
 #include "timeline/player.h"
+#include "tools/calibrations.h"
 #include "tools/drawing_options.h"
 #include "tools/frame_fields.h"
 #include "tools/frame_times.h"
@@ -234,7 +235,9 @@ Result<void> draw(const FramesRequest& request, const Options& options) {
                                             : CameraMan::of_path(request.camera_path, request.drawing.size);
   if (!camera) return forward_error(camera);
   timeline::Player player(timeline::compile(scene));
-  auto renderer = render::Renderer::create(scene, player, renderer_options(request));
+  render::RendererOptions how = renderer_options(request);
+  if (auto costs = set_costs(how, request.drawing.calibration, request.quiet); !costs) return costs;
+  auto renderer = render::Renderer::create(scene, player, how);
   if (!renderer) return forward_error(renderer);
   if (auto made = make_folder(request.folder); !made) return made;
   std::size_t warned = 0;

@@ -160,6 +160,14 @@ Shaded shaded_fragments(const Load& load, double screen_pixels) {
   return out;
 }
 
+double outlines(const Load& load) {
+  if (load.draws <= 0.0 || load.fragments <= 0.0) return 0.0;
+  const double each = load.fragments / load.draws;
+  const double facing = std::max(1.0, load.vertices / load.draws / 6.0);  // half of the triangles
+  const double seen = facing * (1.0 - std::exp(-each / facing));
+  return load.draws * std::sqrt(seen * each);
+}
+
 GpuStages device_stages(const Load& load, double screen_pixels, const UnitCosts& c) {
   if (load.draws <= 0.0) return {};
   GpuStages out;
@@ -169,10 +177,13 @@ GpuStages device_stages(const Load& load, double screen_pixels, const UnitCosts&
       Work{load.draws, mixed(c.draw_s, load.textured_share, &Curve::line_at, per_draw)}};
   out.vertices_s = work_s(vertices);
   const Shaded s = shaded_fragments(load, screen_pixels);
-  const std::array fragments{
-      Work{s.shaded, mixed(c.fragment_s, load.textured_share, &Curve::at, s.covered_share)},
-      Work{s.hidden, c.hidden_fragment_s}};
+  const double shade_s = mixed(c.fragment_s, load.textured_share, &Curve::at, s.covered_share);
+  const std::array fragments{Work{s.shaded, shade_s}, Work{s.hidden, c.hidden_fragment_s}};
   out.fragments_s = work_s(fragments);
+  // Costs in proportion to what the fragments themselves do: hidden ones are not shaded.
+  const double plain_s = c.fragment_s[static_cast<std::size_t>(Shading::plain)].at(s.covered_share);
+  if (plain_s > 0.0 && load.fragments > 0.0)
+    out.fragments_s += c.edge_s * outlines(load) * out.fragments_s / (plain_s * load.fragments);
   return out;
 }
 

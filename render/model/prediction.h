@@ -103,6 +103,12 @@ struct Shaded {
 };
 [[nodiscard]] Shaded shaded_fragments(const Load& load, double screen_pixels);
 
+/// Sum over the triangles that are seen of the root of their area in fragments, in proportion to the length
+/// of their outlines: devices shade fragments in blocks of several, so what an outline cuts through costs
+/// extra. Half of the triangles face the viewer; of those smaller than a fragment, only as many as fragments
+/// count.
+[[nodiscard]] double outlines(const Load& load);
+
 /// (2.18) to (2.20) of a load. The cost of a draw's commands is part of T_vert.
 [[nodiscard]] GpuStages device_stages(const Load& load, double screen_pixels, const UnitCosts& costs);
 

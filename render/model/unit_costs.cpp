@@ -51,6 +51,7 @@ UnitCosts rough_costs(bool software_device) {
   c.node_command_device_s = software_device ? 2e-6 : 0.3e-6;
   c.indirect_draw_s = software_device ? 1.3e-6 : 14e-9;
   c.skipped_draw_s = software_device ? 110e-9 : 10e-9;
+  c.edge_s = software_device ? 1e-6 : 0.0;
   c.background_s = software_device ? 5e-9 : 10e-12;
   c.query_s = software_device ? 10e-6 : 0.3e-6;
   c.second_part_device_s = software_device ? 100e-6 : 30e-6;

@@ -50,6 +50,7 @@ struct UnitCosts {
   std::array<Curve, kShadings>
       draw_s;  ///< t_state, t_vert: one draw, by vertices in it (line_at), hardly a fragment
   std::array<Curve, kShadings> fragment_s;  ///< t_frag: one fragment, by the share of the screen covered (at)
+  double edge_s = 0;                        ///< what outlines of triangles add to t_frag, by outlines()
   double hidden_fragment_s = 0;             ///< one that fails the depth test
   double background_s = 0;                  ///< one of the sky: part of T_0 that whatever covers it saves
   double secondary_device_s = 0;            ///< executing a kept command buffer

@@ -62,6 +62,7 @@ void Occlusion::describe(Place& p) {
 }
 
 void Occlusion::reserve(const PassContext& context, std::size_t asked, std::size_t chunks) {
+  chunks = std::max<std::size_t>(chunks, 1);  // buffers to fill and bind even where nothing is seen yet
   Place& p = place(context);
   const bool more_queries = p.room < asked || !*p.pool;
   if (more_queries) {

@@ -17,7 +17,7 @@ bool indirect_nodes(const StrategyContext& context) {
   const double draws = o.objects_per_node != 0 ? o.objects_per_node : kObjectsPerNode;
   // A draw in a secondary costs what a tiny one costs otherwise.
   const double tiny_draw_s = c.draw_s[static_cast<std::size_t>(model::Shading::plain)].at(0);
-  const double secondary_s = c.secondary_s.at(draws) + c.secondary_device_s + draws * tiny_draw_s;
+  const double secondary_s = c.secondary_s.line_at(draws) + c.secondary_device_s + draws * tiny_draw_s;
   return c.node_command_s + c.node_command_device_s + draws * c.indirect_draw_s < secondary_s;
 }
 

@@ -40,6 +40,10 @@ const StrategyEntry* find_strategy(std::string_view name) {
   return found == all.end() ? nullptr : &*found;
 }
 
+bool strategy_uses_costs(std::string_view name) {
+  return name == "queries" || name == "adaptive";
+}
+
 std::vector<std::pair<std::string, std::string>> strategy_choices() {
   std::vector<std::pair<std::string, std::string>> out;
   for (const StrategyEntry& entry : strategies()) out.emplace_back(entry.name, entry.name);

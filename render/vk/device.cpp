@@ -42,7 +42,8 @@ std::optional<std::uint32_t> graphics_family(const vk::raii::PhysicalDevice& phy
 
 DeviceInfo describe(const vk::raii::PhysicalDevice& physical, std::uint32_t index) {
   const auto chain =
-      physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
+      physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties,
+                              vk::PhysicalDeviceIDProperties>();
   const auto& properties = chain.get<vk::PhysicalDeviceProperties2>().properties;
   const auto& driver = chain.get<vk::PhysicalDeviceDriverProperties>();
   DeviceInfo info;
@@ -50,6 +51,10 @@ DeviceInfo describe(const vk::raii::PhysicalDevice& physical, std::uint32_t inde
   info.name = properties.deviceName.data();
   info.type = type_name(properties.deviceType);
   info.driver = std::string(driver.driverName.data()) + " " + driver.driverInfo.data();
+  for (const std::uint8_t byte : chain.get<vk::PhysicalDeviceIDProperties>().deviceUUID) {
+    constexpr const char* kDigits = "0123456789abcdef";
+    info.uuid += {kDigits[byte >> 4], kDigits[byte & 15]};
+  }
   if (properties.apiVersion < VK_API_VERSION_1_3) {
     info.lacks = "Vulkan 1.3";
     return info;

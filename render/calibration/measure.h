@@ -1,0 +1,58 @@
+// Draws the steps of a test scene over and over, and keeps the medians of what each took.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/calibration/test_scene.h"
+#include "render/renderer.h"
+
+namespace scenegen::render::calibration {
+
+/// Medians over frames, seconds.
+struct Stages {
+  double update_s = 0;
+  double plan_s = 0;
+  double record_s = 0;  ///< and submitting
+  double device_s = 0;  ///< what the processor waits for one frame, nothing else in flight
+  double readback_s = 0;
+  [[nodiscard]] double cpu_s() const { return update_s + plan_s + record_s + readback_s; }
+};
+
+struct Measured {
+  Stages steady;              ///< of frames that are like the one before
+  Stages first;               ///< of frames that come from the empty step
+  double leave_record_s = 0;  ///< of the empty frame after them: what is read late is read there
+  double period_s = 0;        ///< from frame to frame, two in flight; 0: not measured
+  FrameReport report;         ///< counts of a steady frame
+  FrameReport first_report;
+  std::size_t samples = 0;
+};
+
+struct MeasureOptions {
+  double budget_s = 5;  ///< rounds over all steps begin as long as this is not spent
+  std::size_t least_rounds = 3, most_rounds = 40;
+  std::size_t settle = 1;  ///< frames after the first one until they are steady
+  std::size_t frames = 2;  ///< steady ones a round
+  /// Steps that are expected to take longer are left out.
+  double longest_frame_s = 1;
+  /// Called after each round with the share of the budget that is spent.
+  std::function<void(double)> progress;
+};
+
+/// One result a step, in their order; `samples` 0: left out. Steps are visited in turn, so what disturbs the
+/// machine for a while disturbs all alike; each is come to from the empty step. `wanted` says which are
+/// measured.
+[[nodiscard]] Result<std::vector<Measured>> measure(const TestScene& test, const RendererOptions& options,
+                                                    const MeasureOptions& how,
+                                                    const std::function<bool(const Step&)>& wanted);
+
+/// Least squares through points (x, y): y = offset + slope x. All of one x: slope 0.
+struct Line {
+  double offset = 0, slope = 0;
+};
+[[nodiscard]] Line fit_line(const std::vector<double>& x, const std::vector<double>& y);
+
+}  // namespace scenegen::render::calibration

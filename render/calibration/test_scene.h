@@ -1,0 +1,60 @@
+// The scene that unit costs are measured on (D 2.5.4): one scene whose visibility timeline chooses among many
+// small test scenes, so that one renderer measures them all.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "render/view.h"
+#include "scene/scene.h"
+
+namespace scenegen::render::calibration {
+
+enum class Trial : std::uint8_t {
+  empty,             ///< nothing
+  boxes,             ///< `draws` boxes of less than a pixel, all in view (D: boxes in growing number)
+  textured_boxes,    ///< the same with textures: base colour and normals
+  meshes,            ///< spheres (or triangles) of `vertices` each, less than a pixel (D: growing batchSize)
+  textured_meshes,   ///< the same with textures
+  layers,            ///< `layers` quads over `share` of the picture, every one in front of those before
+  textured_layers,   ///< the same with textures
+  hidden_layers,     ///< the same back to front: all but the first fail the depth test
+  large_boxes,       ///< `draws` boxes side by side, which cover `share` of the picture
+  boxes_and_layers,  ///< boxes first, then layers: what the device does side by side
+  hidden_boxes,      ///< a wall over the whole picture with `draws` boxes behind it
+  halved_boxes,      ///< `draws` boxes, half of them beside the picture
+};
+
+/// A test scene: visible from `time_s` until the next one's.
+struct Step {
+  Trial trial = Trial::empty;
+  std::uint32_t draws = 0;     ///< objects
+  std::uint32_t vertices = 0;  ///< of each, drawn
+  std::uint32_t layers = 0;
+  double share = 0;  ///< of the picture that is covered
+  double time_s = 0;
+};
+
+struct TestScene {
+  Scene scene;
+  View view;
+  std::vector<Step> steps;
+
+  [[nodiscard]] double end_s() const { return static_cast<double>(steps.size()); }
+};
+
+struct TestSizes {
+  std::vector<std::uint32_t> boxes;     ///< numbers of boxes, ascending
+  std::vector<std::uint32_t> vertices;  ///< of a mesh, ascending; about, spheres come in steps
+  std::uint32_t mesh_vertices = 0;      ///< of all meshes of a step together
+  std::vector<double> shares;           ///< of the picture, as D: 1, 3/4, 1/2, 1/4, 1/8, 1/16
+  std::uint32_t layers = 4;
+};
+
+/// What 2.5.4 and 4.2 ask for, for pictures of `size`. `quick`: fewer sizes.
+[[nodiscard]] TestSizes test_sizes(bool software_device, bool quick);
+[[nodiscard]] TestScene make_test_scene(const TestSizes& sizes, glm::uvec2 size);
+
+}  // namespace scenegen::render::calibration

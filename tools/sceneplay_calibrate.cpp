@@ -1,0 +1,138 @@
+// sceneplay calibrate: measures what drawing costs on a device, for the strategies that choose by it.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "render/calibration/calibration_file.h"
+#include "render/calibration/unit_names.h"
+#include "tools/calibrations.h"
+#include "tools/output.h"
+#include "tools/sceneplay.h"
+
+namespace scenegen::tools {
+namespace {
+
+struct CalibrateRequest {
+  render::CalibrationOptions how;
+  std::string output;
+  bool show = false;
+  Format format = Format::table;
+  bool quiet = false;
+};
+
+/// "1.234 us" with three digits that count.
+std::string duration_text(double seconds) {
+  constexpr std::array<const char*, 5> kUnits{"s", "ms", "us", "ns", "ps"};
+  std::size_t unit = 0;
+  double value = seconds;
+  for (; unit + 1 < kUnits.size() && value != 0.0 && std::abs(value) < 1.0; ++unit) value *= 1e3;
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g %s", value, value == 0.0 ? "s" : kUnits[unit]);
+  return text.data();
+}
+
+std::string number_text(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", value);
+  return text.data();
+}
+
+bool holds(const std::vector<std::string>& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::string table(const render::Calibration& c) {
+  Table out({{"unit", "unit"}, {"symbol", "symbol"}, {"cost", "cost"}, {"what", "what"}});
+  for (const render::UnitName& unit : render::unit_names()) {
+    std::string what(unit.meaning);
+    if (holds(c.not_measured, unit.name)) what += " (not measured: rough)";
+    if (holds(c.clamped, unit.name)) what += " (came out below 0)";
+    const auto add = [&](const std::string& cost, const std::string& more) {
+      out.row({std::string(unit.name), std::string(unit.symbol), cost, what + more});
+    };
+    const auto points = [&](const render::model::Curve& curve, const std::string& more) {
+      for (std::size_t i = 0; i < curve.x.size(); ++i)
+        add(duration_text(curve.y[i]), ", " + more + number_text(curve.x[i]) + " " + std::string(unit.x));
+    };
+    if (unit.value != nullptr) {
+      const double value = c.costs.*unit.value;
+      add(unit.share ? number_text(value) : duration_text(value), "");
+    } else if (unit.curve != nullptr) {
+      points(c.costs.*unit.curve, "");
+    } else {
+      for (std::size_t i = 0; i < render::model::kShadings; ++i)
+        points((c.costs.*unit.curves)[i], std::string(render::kShadingNames[i]) + ", ");
+    }
+  }
+  return out.str(Format::table);
+}
+
+Result<void> run(const CalibrateRequest& request) {
+  if (!request.output.empty()) {
+    if (Result<void> good = check_output_file(request.output); !good) return good;
+  }
+  render::CalibrationOptions how = request.how;
+  const Stopwatch watch;
+  Result<render::Calibration> measured = [&] {
+    Progress progress("calibrating", 100, request.quiet);
+    int shown = 0;
+    how.progress = [&](double share) {
+      for (; shown < static_cast<int>(100.0 * share); ++shown) progress.advance();
+    };
+    return render::calibrate(how);
+  }();
+  if (!measured) return forward_error(measured);
+  std::string path = request.output;
+  if (path.empty()) {
+    Result<std::string> stored = store_calibration(*measured);
+    if (!stored) return forward_error(stored);
+    path = *stored;
+  } else if (Result<void> written = write_file(path, render::calibration_json(*measured)); !written) {
+    return written;
+  }
+  if (request.show) {
+    if (Result<void> written = write_stdout(table(*measured)); !written) return written;
+  }
+  for (const std::string& name : measured->clamped)
+    std::fprintf(stderr, "warning: %s came out below 0 (the machine is busy?) and was set to 0\n",
+                 name.c_str());
+  if (!request.quiet)
+    std::fprintf(stderr, "%s  %s  %ux%u  %u samples  %.1f s\n", path.c_str(), measured->key.device.c_str(),
+                 how.size.x, how.size.y, how.samples, watch.seconds());
+  return {};
+}
+
+}  // namespace
+
+int calibrate_verb(std::span<const std::string> arguments) {
+  CalibrateRequest r;
+  Options options("sceneplay calibrate", {"sceneplay calibrate [options]"},
+                  "measures what drawing costs on a device, for strategies that choose by it.");
+  options.group("Pictures that it is for");
+  options.add("--size", size2_value(r.how.size, {16, 16}, {16384, 16384}, "WxH"), "pixels");
+  options.add("--samples", choice_value<std::uint32_t>(r.how.samples, {{"1", 1}, {"4", 4}}, "N"),
+              "samples a pixel");
+  options.add("--shadows", on_off_value(r.how.shadows), "shadows of the sun");
+  options.group("Measuring");
+  options.flag("--quick", r.how.quick, "fewer sizes and frames");
+  options.flag("--show", r.show, "print the units, with their symbols in the dissertation");
+  options.add("-o,--output", text_value(r.output, "FILE"), "JSON file (docs/CALIBRATION.md)", Role::run,
+              "in the user's cache, where sceneplay looks for it");
+  options.group("Device");
+  options.add("--device", text_value(r.how.device.wanted, "NAME|INDEX"), "Vulkan device", Role::run,
+              "a discrete GPU, else any");
+  options.group("General");
+  options.add_general(r.quiet);
+  const Result<Action> action = options.parse(arguments);
+  if (!action) return report_error(action.error());
+  if (*action != Action::run) {
+    const auto written =
+        write_stdout(*action == Action::help ? options.help(colored(1)) : "sceneplay " SCENEGEN_VERSION "\n");
+    return written ? 0 : report_error(written.error());
+  }
+  const Result<void> done = run(r);
+  return done ? 0 : report_error(done.error());
+}
+
+}  // namespace scenegen::tools
