@@ -88,6 +88,7 @@ struct Renderer::State {
   struct Unfinished {
     vkr::Frame* frame;
     FrameReport report;
+    std::vector<ChunkBox> chunk_boxes;
   };
   std::deque<Unfinished> unfinished;
 
@@ -317,7 +318,8 @@ void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline:
     report.choose_ms = choice->choose_s * 1e3;
   }
   if (options.predictions) predict(report);
-  unfinished.push_back({&frame, report});
+  unfinished.push_back(
+      {&frame, report, options.chunk_boxes ? strategy->chunk_boxes() : std::vector<ChunkBox>{}});
 }
 
 /// What every way of drawing would have cost; what the one that was taken did not find out is estimated.
@@ -340,7 +342,8 @@ void Renderer::State::predict(FrameReport& report) const {
 
 void Renderer::State::finish(FrameResult& out) {
   assert(!unfinished.empty());
-  auto [frame, report] = unfinished.front();
+  auto [frame, report, chunk_boxes] = std::move(unfinished.front());
+  out.chunk_boxes = std::move(chunk_boxes);
   unfinished.pop_front();
   auto start = Clock::now();
   ring->wait(*frame);

@@ -14,6 +14,7 @@
 #include "render/gpu_stage.h"
 #include "render/model/choice.h"
 #include "render/model/unit_costs.h"
+#include "render/node_overlay.h"
 #include "render/strategy_options.h"
 #include "render/view.h"
 #include "scene/result.h"
@@ -45,6 +46,7 @@ struct RendererOptions {
   std::uint32_t frames_in_flight = 2;
   /// For tests: times by pass on a CPU device too, where they mean nothing (it works when it likes).
   bool gpu_stages_on_cpu = false;
+  bool chunk_boxes = false;    ///< FrameResult::chunk_boxes are wanted
   bool full_barriers = false;  ///< a full barrier at every step: must give equal pictures
 };
 
@@ -104,6 +106,7 @@ struct FrameResult {
   std::vector<std::uint8_t> rgba;  ///< sRGB
   std::vector<std::uint32_t> ids;  ///< ObjectId of the nearest opaque or masked object; 0xFFFFFFFF: none
   std::vector<float> depth;  ///< of the same, as in the depth buffer: View::distance_m makes metres of it
+  std::vector<ChunkBox> chunk_boxes;  ///< what the octree's chunks were found to be
 };
 
 /// Not for several threads at once. A lost device ends the program with a message (there is nothing sensible

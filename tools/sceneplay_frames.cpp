@@ -32,6 +32,7 @@ struct FramesRequest {
   double length_s = 0;
   render::PictureFormat format = render::PictureFormat::png;
   bool ids = false, depth = false;
+  bool show_nodes = false;
   std::string strategy = "inline";
   std::uint32_t frames_in_flight = 2;
   DrawingOptions drawing;
@@ -69,9 +70,10 @@ struct Encoded {
   double encode_ms = 0;
   std::uint64_t bytes = 0;
 };
-Result<Encoded> write_frame(const FramesRequest& request, std::size_t number,
-                            const render::FrameResult& frame, const render::View& view) {
+Result<Encoded> write_frame(const FramesRequest& request, std::size_t number, render::FrameResult& frame,
+                            const render::View& view) {
   const Stopwatch watch;
+  if (request.show_nodes) render::draw_chunk_boxes(frame.chunk_boxes, view, request.drawing.size, frame.rgba);
   std::string digits = std::to_string(number);
   digits.insert(0, digits.size() < 5 ? 5 - digits.size() : 0, '0');
   Encoded out;
@@ -164,11 +166,11 @@ class Filming {
     }
     const std::size_t number = finished_++;
     const render::FrameReport report = frame.report;
-    encoding_.push_back(
-        {report, seek_ms_[number],
-         std::async(std::launch::async, [this, number, frame = std::move(frame), view = views_[number]] {
-           return write_frame(request_, number, frame, view);
-         })});
+    encoding_.push_back({report, seek_ms_[number],
+                         std::async(std::launch::async, [this, number, frame = std::move(frame),
+                                                         view = views_[number]]() mutable {
+                           return write_frame(request_, number, frame, view);
+                         })});
     return {};
   }
 
@@ -221,6 +223,7 @@ render::RendererOptions renderer_options(const FramesRequest& request) {
   o.strategy = request.strategy;
   o.predictions = !request.report.empty();
   o.frames_in_flight = request.frames_in_flight;
+  o.chunk_boxes = request.show_nodes;
   return o;
 }
 
@@ -278,6 +281,9 @@ void add_options(Options& options, FramesRequest& r) {
   options.flag("--ids", r.ids,
                "also ids_00000.png: RGBA, object index = R + 2^8 G + 2^16 B + 2^24 A; all ones: background");
   options.flag("--depth", r.depth, "also depth_00000.pfm: metres along the view direction; inf: background");
+  options.flag("--show-nodes", r.show_nodes,
+               "boxes of the octree's chunks over the picture: red hidden, green visible, grey not asked "
+               "about; with --strategy octree, queries-all or queries");
   options.add("--report", text_value(r.report, "FILE"), "counts and stage times of every frame as JSON");
   options.group("Time");
   options.add(

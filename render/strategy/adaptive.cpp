@@ -106,6 +106,7 @@ class Adaptive final : public Strategy {
   void resized(glm::uvec2 size) override;
   void finished(const FrameTimes& measured) override;
   [[nodiscard]] model::FrameFacts facts() const override { return taken().facts(); }
+  [[nodiscard]] std::vector<ChunkBox> chunk_boxes() const override { return taken().chunk_boxes(); }
   [[nodiscard]] const ChoiceReport* choice() const override { return &report_; }
 
  private:

@@ -148,6 +148,13 @@ model::FrameFacts CachedOctree::facts() const {
   return facts;
 }
 
+std::vector<ChunkBox> CachedOctree::chunk_boxes() const {
+  std::vector<ChunkBox> out;
+  if (inline_) return out;
+  for (const std::uint32_t chunk : chunks_) out.push_back({tree().chunk(chunk).content.box_m, {}});
+  return out;
+}
+
 void CachedOctree::keep_secondaries(PassRecording& pass, std::span<const std::uint32_t> chunks,
                                     vk::Buffer predicates) {
   if (kept_.size() < tree().chunk_numbers()) kept_.resize(tree().chunk_numbers());

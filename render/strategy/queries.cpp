@@ -27,6 +27,10 @@ class Queries final : public QueryOctree {
                            plan);
   }
 
+  [[nodiscard]] bool known_visible(Kind kind, std::uint32_t chunk) const override {
+    return choosers_[kind].known_visible(chunk);
+  }
+
   std::vector<QueryChooser> choosers_;  // by kind of pass
   double rerecorded_share_ = 0;         // alpha_n
 };

@@ -53,6 +53,11 @@ class QueriesAll final : public QueryOctree {
     }
   }
 
+  [[nodiscard]] bool known_visible(Kind kind, std::uint32_t chunk) const override {
+    const Belief& belief = beliefs_[kind][chunk];
+    return belief.revision == tree().chunk(chunk).revision && !belief.hidden;
+  }
+
   std::array<std::vector<Belief>, kKinds> beliefs_;  // by chunk
 };
 

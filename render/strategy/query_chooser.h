@@ -49,6 +49,10 @@ class QueryChooser {
   /// Fills an empty plan.
   void choose(const Frame& frame, QueryPlan& plan);
 
+  /// Of a chunk by itself.
+  [[nodiscard]] bool known_visible(std::uint32_t chunk) const {
+    return chunk < chunks_.size() && chunks_[chunk].verdict == Verdict::visible;
+  }
   [[nodiscard]] Phase phase() const { return phase_; }
   /// x* of the last frame: how many hidden parts it pays to ask about.
   [[nodiscard]] double best() const { return best_; }

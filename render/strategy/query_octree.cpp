@@ -71,10 +71,24 @@ void QueryOctree::receive(Kind kind, const PassContext& context) {
   learn(kind, answers);
 }
 
+std::vector<ChunkBox> QueryOctree::chunk_boxes() const {
+  std::vector<ChunkBox> out = CachedOctree::chunk_boxes();
+  if (out.empty()) return out;  // it may have given up
+  out.clear();
+  const Kind kind = main_kind();
+  for (const std::uint32_t chunk : plans_[kind].first) {
+    out.push_back({tree().chunk(chunk).content.box_m,
+                   known_visible(kind, chunk) ? ChunkVerdict::visible : ChunkVerdict::not_asked});
+  }
+  for (const std::uint32_t chunk : plans_[kind].second)
+    out.push_back({tree().chunk(chunk).content.box_m, ChunkVerdict::hidden});
+  return out;
+}
+
 model::FrameFacts QueryOctree::facts() const {
   model::FrameFacts facts = CachedOctree::facts();
   if (!facts.exact_octree) return facts;  // it gave up
-  const QueryPlan& plan = plans_[plans_[color].first.empty() && plans_[color].second.empty() ? ids : color];
+  const QueryPlan& plan = plans_[main_kind()];
   const ScreenArea screen(view(), context_.size);
   facts.asked = static_cast<double>(plan.asked.size());
   for (const Asked& asked : plan.asked) facts.asked_fragments += screen.fragments(asked.box_m);

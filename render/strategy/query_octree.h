@@ -17,6 +17,7 @@ class QueryOctree : public CachedOctree {
  public:
   explicit QueryOctree(const StrategyContext& context);
   [[nodiscard]] model::FrameFacts facts() const override;
+  [[nodiscard]] std::vector<ChunkBox> chunk_boxes() const override;
 
  protected:
   /// Passes have a depth each, so each asks for itself.
@@ -29,12 +30,19 @@ class QueryOctree : public CachedOctree {
   /// Divides chunks_. The plan is empty.
   virtual void choose(Kind kind, const QueryBoxes& boxes, QueryPlan& plan) = 0;
 
+  /// Was it visible when it was asked about?
+  [[nodiscard]] virtual bool known_visible(Kind kind, std::uint32_t chunk) const = 0;
+
   /// Nothing that is hidden is drawn too late.
   [[nodiscard]] bool exact() const { return exact_; }
 
  private:
   void draw_chunks(PassRecording& pass) final;
   [[nodiscard]] Predicates predicates() const;
+  /// What facts and boxes are about.
+  [[nodiscard]] Kind main_kind() const {
+    return plans_[color].first.empty() && plans_[color].second.empty() ? ids : color;
+  }
 
   bool exact_ = true;
   std::array<std::unique_ptr<Occlusion>, kKinds> occlusion_;

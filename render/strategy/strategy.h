@@ -11,6 +11,7 @@
 #include "render/draw_scene.h"
 #include "render/model/choice.h"
 #include "render/model/prediction.h"
+#include "render/node_overlay.h"
 #include "render/stage_timer.h"
 #include "render/strategy_options.h"
 #include "render/view.h"
@@ -100,6 +101,9 @@ class Strategy {
 
   /// Of a strategy that chooses among others, about the last plan(); null: it does not.
   [[nodiscard]] virtual const ChoiceReport* choice() const { return nullptr; }
+  /// Chunks in the frustum of the frame that was just drawn; none for strategies without an octree. For
+  /// pictures of how it works.
+  [[nodiscard]] virtual std::vector<ChunkBox> chunk_boxes() const { return {}; }
 
   /// Of the last plan and the passes since.
   [[nodiscard]] const PlanCounters& counters() const { return counters_; }
