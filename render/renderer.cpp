@@ -298,6 +298,7 @@ void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline:
   report.nodes = counters.nodes;
   report.tree_nodes = counters.tree_nodes;
   report.drawn = counters.drawn;
+  report.chunks = counters.chunks;
   report.secondaries = counters.secondaries;
   report.recorded = counters.recorded;
   report.recorded_draws = counters.recorded_draws;

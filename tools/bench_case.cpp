@@ -8,6 +8,7 @@
 #include "render/strategy_names.h"
 #include "tools/frame_fields.h"
 #include "tools/output.h"
+#include "tools/trace.h"
 
 namespace scenegen::tools {
 namespace {
@@ -150,12 +151,13 @@ struct BenchSeat::Pass {
     run.cpu_ms.reserve(frames);
   }
 
-  void finished(const render::FrameReport& report, double seek_ms) {
+  /// False for a frame that does not count.
+  bool finished(const render::FrameReport& report, double seek_ms) {
     const Clock::time_point now = Clock::now();
     const double frame_ms = std::chrono::duration<double, std::milli>(now - before).count();
     before = now;
     const std::int64_t number = next++;
-    if (number < 0 || number >= static_cast<std::int64_t>(frames)) return;
+    if (number < 0 || number >= static_cast<std::int64_t>(frames)) return false;
     run.frame_ms.push_back(frame_ms);
     run.stages_ms[0].push_back(seek_ms);
     double cpu_ms = seek_ms;
@@ -170,6 +172,7 @@ struct BenchSeat::Pass {
     for (std::size_t i = 0; i < run.counters.size(); ++i)
       run.counters[i] += report.*counter_fields()[i].value;
     run.objects = report.objects;
+    return true;
   }
 
   std::size_t frames;
@@ -179,18 +182,29 @@ struct BenchSeat::Pass {
 };
 
 Result<BenchRun> BenchSeat::run(const std::vector<double>& moments, std::uint32_t warm_up,
-                                const std::function<void(std::size_t, std::size_t)>& on_frame) {
+                                const std::function<void(std::size_t, std::size_t)>& on_frame,
+                                nlohmann::ordered_json* trace) {
   if (Result<void> made = make(); !made) return forward_error(made);
   Pass pass(moments.size());
   pass.next = -static_cast<std::int64_t>(warm_up);
   const std::int64_t end = static_cast<std::int64_t>(moments.size()) + renderer_->most_in_flight() - 1;
   const auto total = static_cast<std::size_t>(end - pass.next);
   std::deque<double> seek_ms;
+  std::deque<render::View> views;
+  struct Traced {  // rows are made of them when nothing is measured any more
+    render::FrameReport report;
+    render::View view;
+    double seek_ms;
+  };
+  std::vector<Traced> traced;
+  if (trace != nullptr) traced.reserve(moments.size());
   render::FrameResult result;
   const auto finish_one = [&]() -> Result<void> {
     if (Result<void> done = renderer_->finish(result); !done) return done;
-    pass.finished(result.report, seek_ms.front());
+    if (pass.finished(result.report, seek_ms.front()) && trace != nullptr)
+      traced.push_back({result.report, views.front(), seek_ms.front()});
     seek_ms.pop_front();
+    views.pop_front();
     on_frame(total - static_cast<std::size_t>(end - pass.next), total);
     return {};
   };
@@ -201,12 +215,15 @@ Result<BenchRun> BenchSeat::run(const std::vector<double>& moments, std::uint32_
     const Stopwatch watch;
     const timeline::ChangeSet& changes = player_->seek(moments[moment_of_frame(i, moments.size())]);
     seek_ms.push_back(watch.seconds() * 1e3);
-    if (Result<void> done = renderer_->submit(changes, *player_, camera_.view(*player_)); !done)
+    views.push_back(camera_.view(*player_));
+    if (Result<void> done = renderer_->submit(changes, *player_, views.back()); !done)
       return forward_error(done);
   }
   while (renderer_->in_flight() > 0) {
     if (Result<void> done = finish_one(); !done) return forward_error(done);
   }
+  for (const Traced& t : traced)
+    trace->push_back(trace_row(t.report, t.view, options_.strategy, t.seek_ms, 1));
   pass.run.device_bytes = renderer_->device_bytes();
   pass.run.warnings = renderer_->warnings();
   if (Result<void> clean = check_validation(*renderer_); !clean) return forward_error(clean);

@@ -68,8 +68,10 @@ class BenchSeat {
         options_(std::move(options)) {}
 
   /// `on_frame` is told how many frames of how many are done.
+  /// `trace`, if not null, gets a row a frame that counts.
   [[nodiscard]] Result<BenchRun> run(const std::vector<double>& moments, std::uint32_t warm_up,
-                                     const std::function<void(std::size_t, std::size_t)>& on_frame);
+                                     const std::function<void(std::size_t, std::size_t)>& on_frame,
+                                     nlohmann::ordered_json* trace = nullptr);
 
  private:
   struct Pass;

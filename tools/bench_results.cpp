@@ -90,15 +90,6 @@ ordered_json case_json(const CaseResult& result, std::optional<double> best_ms) 
   return out;
 }
 
-void flatten(const std::string& name, const ordered_json& value, ordered_json& out) {
-  if (value.is_array()) return;
-  if (!value.is_object()) {
-    out[name] = value;
-    return;
-  }
-  for (const auto& [key, member] : value.items()) flatten(name.empty() ? key : name + "." + key, member, out);
-}
-
 }  // namespace
 
 Summary summarize(std::vector<double> values) {
@@ -140,27 +131,6 @@ ordered_json cases_json(const std::vector<GroupResult>& groups) {
     for (const CaseResult& result : group.cases) out.push_back(case_json(result, group.best_ms()));
   }
   return out;
-}
-
-std::string cases_csv(const ordered_json& cases) {
-  std::vector<ordered_json> rows;
-  std::vector<Table::Column> columns;
-  for (const ordered_json& one : cases) {
-    flatten("", one, rows.emplace_back(ordered_json::object()));
-    for (const auto& [name, value] : rows.back().items()) {
-      const bool known = std::any_of(columns.begin(), columns.end(),
-                                     [&](const Table::Column& column) { return column.name == name; });
-      if (!known) columns.push_back({name, name});
-    }
-  }
-  Table table(columns);
-  for (const ordered_json& row : rows) {
-    std::vector<ordered_json> values;
-    for (const Table::Column& column : columns)
-      values.push_back(row.contains(column.name) ? row[column.name] : ordered_json());
-    table.row(std::move(values));
-  }
-  return table.str(Format::csv);
 }
 
 }  // namespace scenegen::tools

@@ -44,8 +44,6 @@ struct GroupResult {
 
 /// Entries of "cases" in bench.json, flat.
 [[nodiscard]] nlohmann::ordered_json cases_json(const std::vector<GroupResult>& groups);
-/// The same as CSV (RFC 4180), one line a case: members of members are joined by a point; lists are left out.
-[[nodiscard]] std::string cases_csv(const nlohmann::ordered_json& cases);
 /// For people; at most 100 characters a line.
 [[nodiscard]] std::string group_table(const GroupResult& group);
 

@@ -14,6 +14,7 @@ std::span<const CounterField> counter_fields() {
       CounterField{"tested", &FrameReport::tested},
       CounterField{"nodes", &FrameReport::nodes},
       CounterField{"treeNodes", &FrameReport::tree_nodes},
+      CounterField{"chunks", &FrameReport::chunks},
       CounterField{"secondaries", &FrameReport::secondaries},
       CounterField{"recorded", &FrameReport::recorded},
       CounterField{"recordedDraws", &FrameReport::recorded_draws},

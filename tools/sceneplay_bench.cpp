@@ -15,6 +15,7 @@
 #include "tools/frame_times.h"
 #include "tools/output.h"
 #include "tools/sceneplay.h"
+#include "tools/trace.h"
 
 namespace scenegen::tools {
 namespace {
@@ -23,7 +24,7 @@ using nlohmann::ordered_json;
 
 struct BenchRequest {
   std::vector<std::string> files;
-  std::string folder, times, camera;
+  std::string folder, times, camera, trace;
   std::vector<std::string> camera_paths;
   std::vector<BenchWay> ways{{"inline", "inline", false, {}, {}}, {"octree", "octree", false, {}, {}}};
   std::vector<std::uint32_t> frames_in_flight{2};
@@ -103,6 +104,8 @@ ordered_json settings_json(const BenchRequest& r, const render::DeviceInfo& devi
           {"octreeN", r.drawing.octree_n},
           {"octreeMemoryMiB", r.drawing.octree_mib},
           {"nodeForm", static_cast<int>(r.drawing.node_form)},
+          {"calibration", r.drawing.calibration},
+          {"correction", !r.drawing.no_correction},
           {"lateVisibility", r.drawing.late_visibility},
           {"fullBarriers", r.drawing.full_barriers},
           {"validation", r.drawing.validation}};
@@ -127,6 +130,9 @@ class Bench {
     if (auto opened = store_.open(request_.resume); !opened) return opened;
     for (const std::string& file : request_.files) {
       if (auto done = run_file(file); !done) return done;
+    }
+    if (!request_.trace.empty()) {
+      if (auto written = write_trace(request_.trace, trace_); !written) return written;
     }
     return first_failure_ ? tl::unexpected<Error>(*first_failure_) : Result<void>();
   }
@@ -206,9 +212,14 @@ class Bench {
       if (!known) return forward_error(known);
       if (*known) {
         result.runs.push_back(std::move(**known));
-      } else if (auto run = seat.run(moments, request_.warm_up, [&](std::size_t done, std::size_t of) {
-                   advance(begun + 1000 * done / of);
-                 })) {
+        advance(begun + 1000);
+        return {};
+      }
+      ordered_json rows = ordered_json::array();
+      const auto on_frame = [&](std::size_t done, std::size_t of) { advance(begun + 1000 * done / of); };
+      auto run = seat.run(moments, request_.warm_up, on_frame, request_.trace.empty() ? nullptr : &rows);
+      if (run) {
+        add_to_trace(result.what, repetition, rows);
         if (auto saved = store_.save(result.what, repetition, *run); !saved) return saved;
         result.runs.push_back(std::move(*run));
       } else {
@@ -217,6 +228,17 @@ class Bench {
     }
     advance(begun + 1000);
     return {};
+  }
+
+  void add_to_trace(const BenchCase& what, std::uint32_t repetition, const ordered_json& rows) {
+    for (const ordered_json& row : rows) {
+      ordered_json& out = trace_.emplace_back(ordered_json{{"file", what.file},
+                                                           {"camera", what.camera},
+                                                           {"framesInFlight", what.frames_in_flight},
+                                                           {"repetition", repetition}});
+      out.update(row);
+      out["strategy"] = what.way.label;
+    }
   }
 
   [[nodiscard]] render::RendererOptions options_of(const BenchCase& what) const {
@@ -229,6 +251,7 @@ class Bench {
     o.how.node_form = what.way.form.value_or(o.how.node_form);
     o.frames_in_flight = what.frames_in_flight;
     if (costs_) o.costs = costs_;
+    o.predictions = !request_.trace.empty();
     return o;
   }
 
@@ -246,8 +269,7 @@ class Bench {
         {"cases", cases}};
     const std::filesystem::path folder(request_.folder);
     if (auto written = write_file((folder / "bench.json").string(), pretty(json)); !written) return written;
-    if (auto written = write_file((folder / "bench.csv").string(), cases_csv(cases)); !written)
-      return written;
+    if (auto written = write_file((folder / "bench.csv").string(), flat_csv(cases)); !written) return written;
     progress_.clear();
     for (const CaseResult& result : groups_.back().cases) {
       if (!result.runs.empty() && !request_.quiet) {
@@ -280,6 +302,7 @@ class Bench {
   std::shared_ptr<const timeline::Timeline> timeline_;
   std::vector<GroupResult> groups_;
   std::optional<Error> first_failure_;
+  ordered_json trace_ = ordered_json::array();
 };
 
 void add_options(Options& options, BenchRequest& r) {
@@ -289,6 +312,10 @@ void add_options(Options& options, BenchRequest& r) {
               "folder for bench.json, bench.csv and the single runs; made when missing");
   options.flag("--resume", r.resume,
                "keep the runs that DIR holds already, and measure only what is missing");
+  options.add("--trace", text_value(r.trace, "FILE"),
+              "one row a frame that counts, of the runs measured now: camera, choice, predictions (some 50 "
+              "us a frame), "
+              "counts, stage times; .csv or .json");
   options.group("Measuring");
   options.add("--repeat", whole_value(r.repeat, 1U, 1000U),
               "runs of each case; those of one scene and camera take turns");
@@ -317,6 +344,7 @@ void add_options(Options& options, BenchRequest& r) {
 }
 
 Result<void> measure(const BenchRequest& request) {
+  if (auto named = check_trace_name(request.trace); !named) return named;
   auto device = render::share_device(request.drawing.renderer().device);
   if (!device) return forward_error(device);
   // Found out before anything is measured.
@@ -327,6 +355,9 @@ Result<void> measure(const BenchRequest& request) {
   std::filesystem::create_directories(request.folder, error);
   if (error || !std::filesystem::is_directory(request.folder, error))
     return fail(ErrorKind::io, request.folder, error ? "cannot be made: " + error.message() : "is no folder");
+  if (!request.trace.empty()) {
+    if (auto writable = check_output_file(request.trace); !writable) return writable;
+  }
   if (auto writable = check_output_file((std::filesystem::path(request.folder) / "bench.json").string());
       !writable)
     return writable;

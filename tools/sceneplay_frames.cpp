@@ -19,6 +19,7 @@
 #include "tools/frame_times.h"
 #include "tools/output.h"
 #include "tools/sceneplay.h"
+#include "tools/trace.h"
 
 namespace scenegen::tools {
 
@@ -27,7 +28,7 @@ namespace {
 using nlohmann::ordered_json;
 
 struct FramesRequest {
-  std::string file, folder, times, camera, camera_path, report;
+  std::string file, folder, times, camera, camera_path, report, trace;
   double fps = 25;
   double length_s = 0;
   render::PictureFormat format = render::PictureFormat::png;
@@ -147,6 +148,7 @@ class Filming {
   }
 
   [[nodiscard]] ordered_json frames() const { return frames_; }
+  [[nodiscard]] const ordered_json& trace() const { return trace_; }
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
   [[nodiscard]] render::Renderer& renderer() { return renderer_; }
 
@@ -166,6 +168,9 @@ class Filming {
     }
     const std::size_t number = finished_++;
     const render::FrameReport report = frame.report;
+    if (!request_.trace.empty())
+      trace_.push_back(trace_row(report, views_[number], request_.strategy, seek_ms_[number],
+                                 request_.ids || request_.depth ? 2 : 1));
     encoding_.push_back({report, seek_ms_[number],
                          std::async(std::launch::async, [this, number, frame = std::move(frame),
                                                          view = views_[number]]() mutable {
@@ -197,6 +202,7 @@ class Filming {
   std::size_t finished_ = 0;
   std::uint64_t bytes_ = 0;
   ordered_json frames_ = ordered_json::array();
+  ordered_json trace_ = ordered_json::array();
 };
 
 ordered_json report_json(const FramesRequest& request, Filming& filming, double load_s, double total_s) {
@@ -221,13 +227,14 @@ render::RendererOptions renderer_options(const FramesRequest& request) {
   render::RendererOptions o = request.drawing.renderer();
   o.outputs = {true, request.ids, request.depth};
   o.strategy = request.strategy;
-  o.predictions = !request.report.empty();
+  o.predictions = !request.report.empty() || !request.trace.empty();
   o.frames_in_flight = request.frames_in_flight;
   o.chunk_boxes = request.show_nodes;
   return o;
 }
 
 Result<void> draw(const FramesRequest& request, const Options& options) {
+  if (auto named = check_trace_name(request.trace); !named) return named;
   const Stopwatch watch;
   auto read = gltf::read(request.file, {});
   if (!read) return forward_error(read);
@@ -243,6 +250,9 @@ Result<void> draw(const FramesRequest& request, const Options& options) {
   auto renderer = render::Renderer::create(scene, player, how);
   if (!renderer) return forward_error(renderer);
   if (auto made = make_folder(request.folder); !made) return made;
+  if (!request.trace.empty()) {
+    if (auto writable = check_output_file(request.trace); !writable) return writable;
+  }
   std::size_t warned = 0;
   print_warnings(*renderer, warned, request.quiet);
   const std::uint64_t objects = scene.objects.size();
@@ -253,6 +263,9 @@ Result<void> draw(const FramesRequest& request, const Options& options) {
   if (auto done = filming.run(*times); !done) return done;
   print_warnings(filming.renderer(), warned, request.quiet);  // what came up on the way
   if (auto clean = check_validation(filming.renderer()); !clean) return clean;
+  if (!request.trace.empty()) {
+    if (auto written = write_trace(request.trace, filming.trace()); !written) return written;
+  }
   if (!request.report.empty()) {
     const auto json = report_json(request, filming, load_s, watch.seconds());
     if (auto written = write_file(request.report, pretty(json)); !written) return written;
@@ -285,6 +298,8 @@ void add_options(Options& options, FramesRequest& r) {
                "boxes of the octree's chunks over the picture: red hidden, green visible, grey not asked "
                "about; with --strategy octree, queries-all or queries");
   options.add("--report", text_value(r.report, "FILE"), "counts and stage times of every frame as JSON");
+  options.add("--trace", text_value(r.trace, "FILE"),
+              "one row a frame: camera, choice, predictions, counts, stage times; .csv or .json");
   options.group("Time");
   options.add(
       "--times",

@@ -66,6 +66,7 @@ void CachedOctree::plan(const View& view) {
   counters_.tree_nodes = tree().node_count();
   counters_.tested = list_.tested + found_.tests;
   counters_.drawn = list_.blended.size();
+  counters_.chunks = chunks_.size();
   for (const std::uint32_t chunk : chunks_) counters_.drawn += tree().chunk(chunk).slots.size();
 }
 

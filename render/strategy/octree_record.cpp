@@ -35,6 +35,7 @@ class OctreeRecord final : public ListStrategy {
     list_.tested += found.tests;
     finish_plan(view);
     counters_.nodes = found.nodes;
+    counters_.chunks = chunks_.size();
     counters_.tree_nodes = tree.node_count();
     boxes_tested_ = found.tests;
   }

@@ -57,6 +57,7 @@ struct PlanCounters {
   std::uint64_t drawn = 0;              ///< slots that are drawn
   std::uint64_t nodes = 0;              ///< octree nodes visited
   std::uint64_t tree_nodes = 0;         ///< nodes that the octree has
+  std::uint64_t chunks = 0;             ///< of the octree, in the frustum
   std::uint64_t secondaries = 0;        ///< cached secondary command buffers executed, in all passes
   std::uint64_t recorded = 0;           ///< kept chunks recorded, or written for indirect draws, anew
   std::uint64_t recorded_draws = 0;     ///< draw commands in those

@@ -1,6 +1,7 @@
 // sceneplay bench: what it measures, keeps, resumes and refuses; and the arithmetic of its summaries.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <map>
@@ -10,6 +11,7 @@
 #include "tests/render/render_support.h"
 #include "tests/tools/process.h"
 #include "tools/bench_results.h"
+#include "tools/trace.h"
 
 using namespace scenegen;
 using namespace scenegen::test;
@@ -93,8 +95,9 @@ TEST_CASE("bench: cases, runs, counters and both files") {
   const auto result = play("bench " + wall_file(folder) + " -o " + out +
                            " --strategy inline,octree:n=10:secondaries --frames 6 --repeat 2 --warm-up 3 "
                            "--size 32x18 --shadows off"
-                           " --frames-in-flight 1,3 --validation on --camera-path " +
-                           folder.file("path.json") + " --camera-path " + folder.file("far.json"));
+                           " --frames-in-flight 1,3 --validation on --trace " +
+                           folder.file("trace.csv") + " --camera-path " + folder.file("path.json") +
+                           " --camera-path " + folder.file("far.json"));
   INFO(result.err);
   REQUIRE(result.code == 0);
   CHECK(result.err.empty());
@@ -129,11 +132,64 @@ TEST_CASE("bench: cases, runs, counters and both files") {
     CHECK(by_octree["counters"]["secondaries"].get<double>() > 1);
     CHECK(by_inline["objects"] == 48);
   }
+  const std::string trace = read_file(folder.file("trace.csv"));
+  CHECK(line_count(trace) == 1 + 6 * 16);
+  CHECK(trace.starts_with("file,camera,framesInFlight,repetition,timeS,eyeM.x,eyeM.y,eyeM.z,forward.x,"));
   const std::string csv = read_file(out + "/bench.csv");
   CHECK(line_count(csv) == 9);
   CHECK(csv.starts_with("file,camera,framesInFlight,strategy,objects,"));
   CHECK(csv.find(",frameMs.mean,") != std::string::npos);
   CHECK(csv.find(",counters.draws,") != std::string::npos);
+}
+
+TEST_CASE("a trace has a row a frame, with shares that are counted") {
+  const TemporaryFolder folder;
+  const std::string call = "frames " + wall_file(folder) + " -o " + folder.file("out") +
+                           " --size 32x18 --shadows off --times 0:4:0.5 --ids --strategy octree --octree-n 4 "
+                           "--node-form secondaries --camera auto --quiet ";
+  REQUIRE(play(call + "--trace " + folder.file("out/t.json") + " --report " + folder.file("r.json")).code ==
+          0);
+  REQUIRE(play(call + "--trace " + folder.file("t.csv")).code == 0);
+  const auto trace = nlohmann::json::parse(read_file(folder.file("out/t.json")));
+  const auto frames = nlohmann::json::parse(read_file(folder.file("r.json")))["frames"];
+  CHECK(trace["schema"] == "sceneplay/trace");
+  REQUIRE(trace["frames"].size() == 9);
+  double least = 1, most = 0;
+  for (std::size_t i = 0; i < 9; ++i) {
+    const nlohmann::json& row = trace["frames"][i];
+    INFO(i << " " << row.dump());
+    CHECK(row["timeS"] == frames[i]["timeS"]);
+    CHECK(row["strategy"] == "octree");
+    CHECK(row["changed"] == frames[i]["changed"]);
+    CHECK(row["choiceLeftMs"].is_null());
+    CHECK(row["predicted"].size() > 4);
+    CHECK(row["dAnim"].get<double>() == Approx(row["changed"].get<double>() / 48));
+    const double forward = std::hypot(row["forward"]["x"].get<double>(), row["forward"]["y"].get<double>(),
+                                      row["forward"]["z"].get<double>());
+    CHECK(forward == Approx(1).epsilon(1e-4));
+    CHECK(row["eyeM"]["y"].get<double>() > 0);
+    CHECK(row["chunks"].get<double>() * 2 == row["secondaries"]);  // colour; ids
+    const double alpha = row["alphaN"].get<double>();
+    CHECK(alpha == Approx(row["recorded"].get<double>() / row["secondaries"].get<double>()));
+    least = std::min(least, alpha);
+    most = std::max(most, alpha);
+  }
+  CHECK(most == 1);  // the first frame
+  CHECK(least < 1);
+  const std::string csv = read_file(folder.file("t.csv"));
+  CHECK(line_count(csv) == 10);
+  CHECK(csv.find(",alphaN,dAnim,") != std::string::npos);
+  CHECK(csv.find(",stagesMs.seek,") != std::string::npos);
+  CHECK(csv.find(",predicted.inline.totalMs,") != std::string::npos);
+  const auto wrong = play(call + "--trace " + folder.file("t.txt"));
+  CHECK(wrong.code == 2);
+  CHECK_THAT(wrong.err, Catch::Matchers::Contains("--trace"));
+}
+
+TEST_CASE("entries of lists become columns by their name") {
+  const auto rows = nlohmann::ordered_json::parse(
+      R"([{"a":1,"of":[{"name":"x","ms":2},{"name":"y","ms":3}],"plain":[1,2]},{"a":4,"b":{"c":"d,e"}}])");
+  CHECK(flat_csv(rows) == "a,of.x.ms,of.y.ms,b.c\n1,2,3,\n4,,,\"d,e\"\n");
 }
 
 TEST_CASE("bench --resume measures what is missing and nothing else") {
