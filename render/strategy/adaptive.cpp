@@ -28,10 +28,13 @@ double seconds_since(Clock::time_point start) {
 
 /// The choice may take this share of a frame.
 constexpr double kChooseShare = 0.008;
-/// While the octree is built or brought up to date, a slice of this share of a frame, and at least so many
-/// slots, is done in each.
-constexpr double kPrepareShare = 0.25;
-constexpr std::size_t kLeastSlice = 4000;
+/// While the octree is built or brought up to date, this share of a frame is spent on that, and of what the
+/// processor would only wait for the device.
+constexpr double kPrepareShare = 0.2;
+constexpr double kIdleShare = 0.7;
+constexpr std::size_t kSlice = 2048;  ///< slots between two looks at the clock
+/// No more slots than these are behind: the rest is done at once when the octree is taken.
+constexpr std::size_t kNearlyDone = 4096;
 /// So near to being cheaper, the octree is built and kept up to date though it is not taken.
 constexpr double kNear = 1.2;
 /// Frames after a change that say nothing about steady state: commands are recorded for the first time.
@@ -131,6 +134,7 @@ class Adaptive final : public Strategy {
   void decide(const View& view);
   void force(const View& view);
   void take(Way way, const View& view);
+  [[nodiscard]] bool nearly_done() const { return tree_->pending() <= kNearlyDone; }
   /// Is the octree built, and nearly worth being taken?
   [[nodiscard]] bool near() const {
     return built_ && tree_->available() && offers_[tree].frame_s < kNear * offers_[flat].frame_s;
@@ -163,7 +167,8 @@ class Adaptive final : public Strategy {
   std::uint64_t frame_ = 0;
   std::uint64_t decided_frame_ = 0;
   std::uint32_t since_change_ = 1000;
-  double choose_s_ = 0;  // mean
+  double choose_s_ = 0;                 // mean
+  double cpu_s_ = 2e-3, gpu_s_ = 2e-3;  // means of what frames took
   std::uint32_t passes_ = 0;
   bool preparing_ = false;
   bool built_ = false;
@@ -198,8 +203,8 @@ void Adaptive::update(const timeline::ChangeSet& changes) {
 
 /// As often as the choice keeps to its share of a frame.
 bool Adaptive::due() const {
-  if (preparing_ || frame_ <= 2 || since_change_ < 2 * kSettling) return true;
-  const double share = kChooseShare * std::max(1e-6, offers_[way_].frame_s);
+  if (frame_ <= 2) return true;
+  const double share = kChooseShare * std::max(1e-6, frame_s({cpu_s_, gpu_s_}));
   return static_cast<double>(frame_ - decided_frame_) >= std::min(60.0, choose_s_ / share);
 }
 
@@ -212,14 +217,16 @@ void Adaptive::plan(const View& view) {
   report_.choose_s = 0;
   if (context_.options.change_every != 0) {
     force(view);
-  } else if (due()) {
+  } else {
     if (way_ == flat && (preparing_ || near())) prepare();
-    const auto start = Clock::now();
-    gather(view);
-    make_offers();
-    report_.choose_s = seconds_since(start);
-    decide(view);
-    choose_s_ += 0.2 * (report_.choose_s - choose_s_);
+    if (due() || (preparing_ && nearly_done())) {
+      const auto start = Clock::now();
+      gather(view);
+      make_offers();
+      report_.choose_s = seconds_since(start);
+      decide(view);
+      choose_s_ += 0.2 * (report_.choose_s - choose_s_);
+    }
   }
   passes_ = 0;
   counters_ = taken().counters();
@@ -311,7 +318,7 @@ void Adaptive::make_offers() {
     raw_[tree] = asking;
     tree_s = asking_s;
   }
-  const bool ready = built_ && tree_->pending() <= kLeastSlice;
+  const bool ready = built_ && nearly_done();
   offers_[tree] = {method, tree_s, way_ == tree ? 0.0 : change_to_tree_s(), tree_->available(), ready};
 }
 
@@ -334,9 +341,12 @@ void Adaptive::decide(const View& view) {
 
 /// A slice of what was put off, while something else draws.
 void Adaptive::prepare() {
-  const double slot_s = std::max(20e-9, context_.costs.intersect_s * std::max(1.0, facts_.height));
-  const double slots = kPrepareShare * offers_[flat].frame_s / slot_s;
-  if (tree_->catch_up(std::max(kLeastSlice, static_cast<std::size_t>(std::min(slots, 1e9))))) built_ = true;
+  double budget_s = kPrepareShare * frame_s({cpu_s_, gpu_s_});
+  if (context_.frames_in_flight > 1) budget_s = std::max(budget_s, kIdleShare * (gpu_s_ - cpu_s_));
+  const auto start = Clock::now();
+  while (!tree_->catch_up(kSlice) && seconds_since(start) < budget_s) {
+  }
+  built_ = built_ || nearly_done();
 }
 
 void Adaptive::take(Way way, const View& view) {
@@ -403,6 +413,10 @@ void Adaptive::resized(glm::uvec2 size) {
 void Adaptive::finished(const FrameTimes& measured) {
   const Drawn& drawn = drawn_[measured.serial % drawn_.size()];
   if (drawn.frame != measured.serial) return;
+  // As slow as to outlast a hitch, as fast as to know a scene after some frames.
+  constexpr double kNewest = 0.2;
+  cpu_s_ += kNewest * (std::min(measured.cpu_s, 4.0 * cpu_s_) - cpu_s_);
+  if (measured.gpu_s > 0.0) gpu_s_ += kNewest * (std::min(measured.gpu_s, 4.0 * gpu_s_) - gpu_s_);
   (drawn.way == tree ? static_cast<Strategy&>(*tree_) : *flat_).finished(measured);
   if (drawn.usual)
     correction_.measured(drawn.method, drawn.since_change, drawn.predicted, {measured.cpu_s, measured.gpu_s});
