@@ -154,6 +154,32 @@ TEST_CASE("frames: files, names, report and the line at the end") {
     CHECK(read_file(out + "/" + name) == read_file(folder.file("again") + "/" + name));
 }
 
+TEST_CASE("frames: what adaptive took, why, and what every way should take") {
+  const TemporaryFolder folder;
+  const std::string call = "frames " + wall_file(folder) + " -o " + folder.file("out") +
+                           " --size 64x36 --times 0,50%,100% --quiet --calibration none --report " +
+                           folder.file("r.json");
+  const auto result = play(call + " --strategy adaptive --no-correction");
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  for (const auto& frame : nlohmann::json::parse(read_file(folder.file("r.json")))["frames"]) {
+    CHECK(frame["strategyUsed"] == "inline");  // three frames are too few to change anything
+    CHECK_THAT(frame["reason"].get<std::string>(),
+               Catch::Matchers::StartsWith("inline: ") && Catch::Matchers::Contains(" ms against "));
+    CHECK(frame["sidesMs"].size() == 2);
+    REQUIRE(frame["predicted"].size() == 7);
+    CHECK(frame["predicted"][1]["name"] == "inline");
+    for (const auto& way : frame["predicted"]) CHECK(way["totalMs"].get<double>() > 0);
+    CHECK(frame["stagesMs"]["choose"].get<double>() >= 0);
+  }
+  // Others choose nothing, and are predicted all the same.
+  REQUIRE(play(call + " --strategy octree").code == 0);
+  const auto frame = nlohmann::json::parse(read_file(folder.file("r.json")))["frames"][2];
+  CHECK(frame["strategyUsed"] == "octree");
+  CHECK(!frame.contains("reason"));
+  CHECK(frame["predicted"].size() == 7);
+}
+
 TEST_CASE("frames: film, forms, camera path, clean under validation") {
   const TemporaryFolder folder;
   const std::string file = wall_file(folder);
