@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "render/calibration/calibration.h"
@@ -75,7 +76,7 @@ class Fit {
   void shadows(const Run& with, const Run& without);
   void kept(const Run& inline_run, const std::vector<std::pair<std::uint32_t, Run>>& runs);
   void listed(const Run& run);
-  void queries(const Run& octree, const Run& asking);
+  void queries(const Run& flat, const Run& each, const Run& asking);
   void indirect(const Run& fine, const Run& coarse);
   void finish();
 
@@ -95,7 +96,9 @@ class Fit {
   void empty_frame(const Run& run);
   void draws(const Run& run);
   void fragments(const Run& run);
+  void fit_outlines(const Run& run);
   void overlaps(const Run& run);
+  void meshes(const Run& run);
   Curve layers(const Run& run, Trial trial) const;
 
   Calibration& out_;
@@ -116,7 +119,6 @@ void Fit::empty_frame(const Run& run) {
 
 void Fit::draws(const Run& run) {
   const auto count = [&](std::size_t i) { return static_cast<double>(run.step(i).draws); };
-  const auto boxes = run.of(Trial::boxes);
   set("recordS", c_.record_s,
       slope(run, Trial::boxes, count, [&](std::size_t i) { return run.record_s(i); }));
   set("cullSlotS", c_.cull_slot_s,
@@ -127,27 +129,39 @@ void Fit::draws(const Run& run) {
         return first.update_s - steady.update_s + std::max(0.0, first.record_s - steady.record_s);
       }));
 
-  std::vector<std::pair<double, double>> points{
-      {36.0, slope(run, Trial::boxes, count, [&](std::size_t i) { return run.device_s(i); })}};
-  for (const std::size_t i : run.of(Trial::meshes)) {
-    const double shadow_s = c_.shadow_vertex_s * run.step(i).vertices;
-    points.emplace_back(run.step(i).vertices, run.device_s(i) / run.step(i).draws - shadow_s);
-  }
-  points.front().second -= 36 * c_.shadow_vertex_s;
+  const double box_s = slope(run, Trial::boxes, count, [&](std::size_t i) { return run.device_s(i); });
+  set("drawS", c_.draw_s[static_cast<std::size_t>(Shading::plain)],
+      Curve{{36.0}, {box_s - 36.0 * c_.shadow_vertex_s}});
+}
+
+/// Spheres whose triangles cover a fragment or so: those that cover none are dropped early and cost far less.
+/// What their fragments and outlines cost is taken off, as far as it is not done beside the vertices' work.
+void Fit::meshes(const Run& run) {
+  const auto each_s = [&](std::size_t i, double textured) {
+    const Step& step = run.step(i);
+    const double n = step.draws;
+    const double covered = step.share * pixels_;
+    const model::Load load{n, n * step.vertices, covered, textured, step.share};
+    const double fragments_s = step.share > 0.0 ? model::device_stages(load, pixels_, c_).fragments_s : 0.0;
+    return (run.device_s(i) + covered * c_.background_s - (1.0 - c_.stage_overlap) * fragments_s) / n -
+           c_.shadow_vertex_s * step.vertices;
+  };
+  Curve plain = c_.draw_s[static_cast<std::size_t>(Shading::plain)];
+  std::vector<std::pair<double, double>> points{{plain.x.front(), plain.y.front()}};
+  for (const std::size_t i : run.of(Trial::meshes)) points.emplace_back(run.step(i).vertices, each_s(i, 0.0));
   std::sort(points.begin(), points.end());
-  Curve plain;
-  for (const auto& [vertices, each_s] : points) plain.x.push_back(vertices), plain.y.push_back(each_s);
+  plain = {};
+  for (const auto& [vertices, s] : points)
+    plain.x.push_back(vertices), plain.y.push_back(positive("drawS", s));
   rising(plain);
   // The textured ones are measured at two sizes: between them the ratio is interpolated.
   Curve ratio;
   for (const Trial trial : {Trial::textured_boxes, Trial::textured_meshes}) {
     for (const std::size_t i : run.of(trial)) {
-      const double v = run.step(i).vertices;
-      const double each_s = run.device_s(i) / run.step(i).draws - c_.shadow_vertex_s * v;
       // Textures never save anything; above 10 it is noise.
-      const double plain_s = plain.line_at(v);
-      ratio.x.push_back(v);
-      ratio.y.push_back(plain_s > 0.0 ? std::clamp(each_s / plain_s, 1.0, 10.0) : 1.0);
+      const double plain_s = plain.line_at(run.step(i).vertices);
+      ratio.x.push_back(run.step(i).vertices);
+      ratio.y.push_back(plain_s > 0.0 ? std::clamp(each_s(i, 1.0) / plain_s, 1.0, 10.0) : 1.0);
     }
   }
   Curve textured = plain;
@@ -188,39 +202,48 @@ void Fit::fragments(const Run& run) {
     if (run.step(i).layers == 1 && run.step(i).share == 1.0 && !plain.y.empty())
       set("backgroundS", c_.background_s, plain.y.back() - run.device_s(i) / pixels_);
   }
-  // Boxes that are large enough to be seen: what neither their vertices nor the area they cover explains.
-  double edges_squared = 0.0;
-  double edges_s = 0.0;
+  fit_outlines(run);
+}
+
+/// Boxes that are large enough to be seen have vertices, fragments and outlines: what outlines cost and how
+/// far all that is done side by side are the two numbers that explain their times best.
+void Fit::fit_outlines(const Run& run) {
+  struct Point {
+    double vertices_s, fragments_s, outlines, measured_s;
+  };
+  std::vector<Point> points;
+  double most_s = 0.0;  // an outline costs no more than all of the time
   for (const std::size_t i : run.of(Trial::large_boxes)) {
     const Step& step = run.step(i);
+    const double n = step.draws;
     const double area = step.share * pixels_;
-    const double edges =
-        model::outlines({static_cast<double>(step.draws), 36.0 * step.draws, area, 0, step.share});
-    const double rest_s = run.device_s(i) - step.draws * c_.draw_s[0].line_at(36.0) -
-                          area * (c_.fragment_s[0].at(step.share) - c_.background_s);
-    edges_squared += edges * edges;
-    edges_s += edges * rest_s;
+    points.push_back({n * c_.draw_s[0].line_at(36.0), area * c_.fragment_s[0].at(step.share),
+                      model::outlines({n, 36.0 * n, area, 0, step.share}),
+                      run.device_s(i) + area * c_.background_s});
+    most_s = std::max(most_s, points.back().measured_s / points.back().outlines);
   }
-  if (edges_squared > 0.0) set("edgeS", c_.edge_s, edges_s / edges_squared);
+  if (points.size() < 2) return;
+  double best = std::numeric_limits<double>::max();
+  constexpr int kSteps = 100;
+  for (int e = 0; e <= kSteps; ++e) {
+    for (int o = 0; o <= 10; ++o) {
+      const double edge_s = most_s * e / kSteps;
+      double error = 0.0;
+      for (const Point& p : points) {
+        const double model_s = model::beside_s(p.vertices_s, p.fragments_s + edge_s * p.outlines, 0.1 * o);
+        error += std::pow(std::log(std::max(model_s, 1e-9) / std::max(p.measured_s, 1e-9)), 2.0);
+      }
+      if (error >= best) continue;
+      best = error;
+      c_.edge_s = edge_s;
+      c_.stage_overlap = 0.1 * o;
+    }
+  }
+  measured_.emplace_back("edgeS");
+  measured_.emplace_back("stageOverlap");
 }
 
 void Fit::overlaps(const Run& run) {
-  const auto both = run.of(Trial::boxes_and_layers);
-  if (!both.empty()) {
-    const Step& step = run.step(both.front());
-    double vertices_s = 0.0;
-    double fragments_s = 0.0;
-    for (const std::size_t i : run.of(Trial::boxes)) {
-      if (run.step(i).draws == step.draws) vertices_s = run.device_s(i);
-    }
-    for (const std::size_t i : run.of(Trial::layers)) {
-      if (run.step(i).layers == step.layers && run.step(i).share == 1.0) fragments_s = run.device_s(i);
-    }
-    const double shorter = std::min(vertices_s, fragments_s);
-    if (shorter > 0.0)
-      set("stageOverlap", c_.stage_overlap,
-          std::clamp((vertices_s + fragments_s - run.device_s(both.front())) / shorter, 0.0, 1.0));
-  }
   const auto boxes = run.of(Trial::boxes);
   if (boxes.empty() || run.results[boxes.back()].period_s <= 0.0) return;
   const Measured& m = run.results[boxes.back()];
@@ -234,6 +257,7 @@ void Fit::inline_run(const Run& run) {
   empty_frame(run);
   draws(run);
   fragments(run);
+  meshes(run);
   overlaps(run);
 }
 
@@ -293,7 +317,9 @@ void Fit::kept(const Run& flat, const std::vector<std::pair<std::uint32_t, Run>>
       slope(fine, Trial::boxes, nodes, [&](std::size_t i) { return fine.plan_s(i); }));
   for (const std::size_t i : fine.of(Trial::halved_boxes)) {
     const double tests = static_cast<double>(fine.results[i].report.tested);
-    set("cullNodeS", c_.cull_node_s, (fine.plan_s(i) - nodes(i) * c_.visit_node_s) / std::max(1.0, tests));
+    // Few boxes need a test here, so noise weighs much; a test is no dearer than a visit with all it does.
+    const double each_s = (fine.plan_s(i) - nodes(i) * c_.visit_node_s) / std::max(1.0, tests);
+    set("cullNodeS", c_.cull_node_s, std::min(each_s, c_.visit_node_s));
   }
 }
 
@@ -306,20 +332,20 @@ void Fit::listed(const Run& run) {
           }));
 }
 
-void Fit::queries(const Run& octree, const Run& asking) {
-  const auto asked = [&](std::size_t i) { return static_cast<double>(asking.results[i].report.queries); };
-  // Asking and reading happen in one frame; what is read alone shows in the empty frame that follows.
-  const double both_s = positive("askS", slope(asking, Trial::boxes, asked, [&](std::size_t i) {
-                                   return asking.record_s(i) - octree.record_s(i);
+void Fit::queries(const Run& flat, const Run& each, const Run& asking) {
+  // A query for each of many boxes that are hardly seen: beyond drawing them.
+  const auto asked = [&](std::size_t i) { return static_cast<double>(each.results[i].report.queries); };
+  const double both_s = positive("askS", slope(each, Trial::boxes, asked, [&](std::size_t i) {
+                                   return each.record_s(i) - flat.record_s(i);
                                  }));
-  const double read_s = slope(asking, Trial::boxes, asked, [&](std::size_t i) {
-    return asking.results[i].leave_record_s - asking.empty().steady.record_s;
+  // Asking and reading happen in one frame; what is read alone shows in the empty frame that follows.
+  const double read_s = slope(each, Trial::boxes, asked, [&](std::size_t i) {
+    return each.results[i].leave_record_s - each.empty().steady.record_s;
   });
   set("receiveS", c_.receive_s, std::min(positive("receiveS", read_s), both_s));
   set("askS", c_.ask_s, both_s - c_.receive_s);
-  set("queryS", c_.query_s, slope(asking, Trial::boxes, asked, [&](std::size_t i) {
-        return asking.device_s(i) - octree.device_s(i);
-      }));
+  set("queryS", c_.query_s,
+      slope(each, Trial::boxes, asked, [&](std::size_t i) { return each.device_s(i) - flat.device_s(i); }));
   // Behind a wall: the same number of draws, skipped. The wall itself is what a layer costs.
   const double wall_s = (c_.fragment_s[0].at(1.0) - c_.background_s) * pixels_;
   std::vector<double> skipped, device_s, cpu_s;
@@ -329,9 +355,9 @@ void Fit::queries(const Run& octree, const Run& asking) {
     const double share = static_cast<double>(r.believed_hidden) / static_cast<double>(r.secondaries);
     skipped.push_back(share * asking.step(i).draws);
     const auto executed = static_cast<double>(r.secondaries);
-    device_s.push_back(asking.device_s(i) - wall_s - asked(i) * c_.query_s -
+    device_s.push_back(asking.device_s(i) - wall_s - static_cast<double>(r.queries) * c_.query_s -
                        executed * c_.secondary_device_s);
-    cpu_s.push_back(asking.record_s(i) - asked(i) * (c_.ask_s + c_.receive_s) -
+    cpu_s.push_back(asking.record_s(i) - static_cast<double>(r.queries) * (c_.ask_s + c_.receive_s) -
                     executed * c_.secondary_s.line_at(asking.step(i).draws / executed));
   }
   if (skipped.size() < 2) return;
@@ -411,7 +437,9 @@ class Runs {
     o.shadows = shadows;
     MeasureOptions how = how_;
     how.budget_s = budget_s_ * share;
-    how.settle = std::string_view(strategy) == "queries-all" ? 3 : options_.quick ? 0 : 1;
+    how.settle = std::string_view(strategy).find("queries") != std::string_view::npos ? 3
+                 : options_.quick                                                     ? 0
+                                                                                      : 1;
     how.progress = [&](double part) {
       if (options_.progress) options_.progress(std::min(1.0, done_ + share * part));
     };
@@ -447,10 +475,13 @@ Result<void> measure_octrees(Runs& runs, const Run& flat, bool quick, Fit& fit) 
     kept.emplace_back(n, std::move(*run));
   }
   fit.kept(flat, kept);
-  Result<Run> asking = runs.run("queries-all", kAsked, false, quick ? 0.2 : 0.15,
-                                [&](const Step& s) { return boxes(s) || s.trial == Trial::hidden_boxes; });
+  Result<Run> each = runs.run("inline-queries", 0, false, quick ? 0.1 : 0.06, boxes);
+  if (!each) return forward_error(each);
+  Result<Run> asking = runs.run("queries-all", kAsked, false, quick ? 0.1 : 0.07, [](const Step& s) {
+    return s.trial == Trial::empty || s.trial == Trial::hidden_boxes;
+  });
   if (!asking) return forward_error(asking);
-  fit.queries(kept[quick ? 0 : 1].second, *asking);
+  fit.queries(flat, *each, *asking);
   if (quick) return {};
   runs.use(NodeForm::indirect);
   Result<Run> fine = runs.run("octree", 10, false, 0.05, boxes);

@@ -201,10 +201,11 @@ class Builder {
   }
   [[nodiscard]] float pixel_m() const { return height_m(kDistanceM) / static_cast<float>(size_.y); }
 
-  void small(MeshId mesh, std::uint32_t from, std::uint32_t to, std::uint32_t of, float shift = 0.0F) {
+  void small(MeshId mesh, std::uint32_t from, std::uint32_t to, std::uint32_t of, float shift = 0.0F,
+             float side_px = 0.7F) {
     for (std::uint32_t i = from; i < to; ++i)
       object(mesh, place(i, of, kDistanceM) + glm::vec3(i % 2 != 0 ? shift : 0.0F, 0, 0),
-             glm::vec3(0.7F * pixel_m()));
+             glm::vec3(side_px * pixel_m()));
   }
   /// A quad in front of the picture's middle, over `share` of it (all of it with some to spare).
   void quad(MeshId mesh, double share, float distance_m) {
@@ -248,9 +249,16 @@ class Builder {
       }
       const std::uint32_t n =
           std::clamp(sizes_.mesh_vertices / each, 4U, sizes_.boxes[sizes_.boxes.size() / 2]);
-      show(group([&] { small(mesh.plain, 0, n, n); }), begin({Trial::meshes, n, each}));
+      // Each of the triangles that face the viewer covers about a fragment.
+      const float side = vertices <= 3 ? 0.7F : std::sqrt(static_cast<float>(each) / 6.0F);
+      const double share = vertices <= 3 ? 0.0
+                                         : n * glm::quarter_pi<double>() * side * side /
+                                               (static_cast<double>(size_.x) * size_.y);
+      if (share > 0.5) continue;  // too small a picture for these
+      show(group([&] { small(mesh.plain, 0, n, n, 0.0F, side); }), begin({Trial::meshes, n, each, 1, share}));
       if (vertices == sizes_.vertices.back())
-        show(group([&] { small(mesh.textured, 0, n, n); }), begin({Trial::textured_meshes, n, each}));
+        show(group([&] { small(mesh.textured, 0, n, n, 0.0F, side); }),
+             begin({Trial::textured_meshes, n, each, 1, share}));
     }
   }
 
@@ -260,14 +268,6 @@ class Builder {
       layers(Trial::textured_layers, quads_.textured, share, 1.0F);
     }
     layers(Trial::hidden_layers, quads_.plain, 1.0, -1.0F);
-    const std::uint32_t n = sizes_.boxes[sizes_.boxes.size() / 2];
-    const std::uint32_t step = begin({Trial::boxes_and_layers, n, 36, sizes_.layers, 1.0});
-    show(group([&] {
-           small(boxes_.plain, 0, n, n);
-           for (std::uint32_t i = 0; i < sizes_.layers; ++i)
-             quad(quads_.plain, 1.0, kWallM + 40.0F - static_cast<float>(i));
-         }),
-         step);
   }
 
   /// One layer, and several: `nearer` 1: each in front of the one before; -1: behind.

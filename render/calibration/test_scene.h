@@ -13,18 +13,18 @@
 namespace scenegen::render::calibration {
 
 enum class Trial : std::uint8_t {
-  empty,             ///< nothing
-  boxes,             ///< `draws` boxes of less than a pixel, all in view (D: boxes in growing number)
-  textured_boxes,    ///< the same with textures: base colour and normals
-  meshes,            ///< spheres (or triangles) of `vertices` each, less than a pixel (D: growing batchSize)
-  textured_meshes,   ///< the same with textures
-  layers,            ///< `layers` quads over `share` of the picture, every one in front of those before
-  textured_layers,   ///< the same with textures
-  hidden_layers,     ///< the same back to front: all but the first fail the depth test
-  large_boxes,       ///< `draws` boxes side by side, which cover `share` of the picture
-  boxes_and_layers,  ///< boxes first, then layers: what the device does side by side
-  hidden_boxes,      ///< a wall over the whole picture with `draws` boxes behind it
-  halved_boxes,      ///< `draws` boxes, half of them beside the picture
+  empty,           ///< nothing
+  boxes,           ///< `draws` boxes of less than a pixel, all in view (D: boxes in growing number)
+  textured_boxes,  ///< the same with textures: base colour and normals
+  meshes,  ///< spheres of `vertices` each, a fragment for each triangle seen (D: growing batchSize); a
+           ///< triangle
+  textured_meshes,  ///< the same with textures
+  layers,           ///< `layers` quads over `share` of the picture, every one in front of those before
+  textured_layers,  ///< the same with textures
+  hidden_layers,    ///< the same back to front: all but the first fail the depth test
+  large_boxes,      ///< `draws` boxes side by side, which cover `share` of the picture
+  hidden_boxes,     ///< a wall over the whole picture with `draws` boxes behind it
+  halved_boxes,     ///< `draws` boxes, half of them beside the picture
 };
 
 /// A test scene: visible from `time_s` until the next one's.

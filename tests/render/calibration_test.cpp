@@ -166,7 +166,6 @@ TEST_CASE("calibration: the test scene shows at each step what it says") {
     INFO(static_cast<int>(step.trial) << " at " << step.time_s);
     std::size_t expected = step.draws;
     if (step.trial == calibration::Trial::hidden_boxes) expected += 1;  // the wall
-    if (step.trial == calibration::Trial::boxes_and_layers) expected += step.layers;
     CHECK(player.visible_count() == expected);
     for (std::uint32_t i = 0; i < test.scene.objects.size(); ++i) {
       if (!player.visible(ObjectId(i))) continue;
