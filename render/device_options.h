@@ -16,6 +16,13 @@ struct DeviceOptions {
   bool validation = false;  ///< Khronos validation layer with synchronization validation; an error without it
 };
 
+/// For tests: memory that is not there.
+struct MemoryFaults {
+  std::uint64_t fail_at = 0;  ///< the so-manyth allocation fails, from 1 on; 0: none
+  std::uint64_t device_bytes =
+      0;  ///< what the device seems to have, counting all that was ever taken; 0: no limit
+};
+
 struct DeviceInfo {
   std::uint32_t index = 0;
   std::string name;

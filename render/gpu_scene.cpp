@@ -81,9 +81,8 @@ GpuScene::GpuScene(const vkr::Device& device, vkr::Memory& memory, const vkr::Pi
   for (const Material& material : scene.materials) material_records_.push_back(material_record(material));
   material_records_.push_back(material_record(Material{}));
   check_range("materials", material_records_.size(), sizeof(MaterialRecord));
-  materials_ =
-      memory_.buffer(material_records_.size() * sizeof(MaterialRecord),
-                     BufferUsage::eStorageBuffer | BufferUsage::eTransferDst, vkr::MemoryUse::device);
+  materials_ = memory_.buffer(material_records_.size() * sizeof(MaterialRecord),
+                              BufferUsage::eStorageBuffer | BufferUsage::eTransferDst, vkr::MemoryUse::scene);
   upload_bytes(materials_, std::as_bytes(std::span(material_records_)));
   camera_ = memory_.buffer(sizeof(CameraBlock), BufferUsage::eUniformBuffer | BufferUsage::eTransferDst,
                            vkr::MemoryUse::device);
@@ -138,7 +137,7 @@ void GpuScene::upload_geometry(const Scene& scene) {
   }
   const auto make = [&](auto& data, vk::BufferUsageFlags usage) {
     vkr::Buffer buffer = memory_.buffer(data.size() * sizeof(data[0]), usage | BufferUsage::eTransferDst,
-                                        vkr::MemoryUse::device);
+                                        vkr::MemoryUse::scene);
     upload_bytes(buffer, std::as_bytes(std::span(data)));
     return buffer;
   };
@@ -273,9 +272,13 @@ void GpuScene::upload_records(std::span<const ObjectRecord> records) {
   const std::uint64_t bytes = std::max<std::size_t>(records.size(), 1) * sizeof(ObjectRecord);
   check_range("slots (object x primitive)", records.size(), sizeof(ObjectRecord));
   records_ =
-      memory_.buffer(bytes, BufferUsage::eStorageBuffer | BufferUsage::eTransferDst, vkr::MemoryUse::device);
+      memory_.buffer(bytes, BufferUsage::eStorageBuffer | BufferUsage::eTransferDst, vkr::MemoryUse::scene);
   upload_bytes(records_, std::as_bytes(records));
   upload_ = {};  // the last upload
+  if (const std::uint64_t spilled = memory_.spilled_bytes(); spilled > 0)
+    warnings_.push_back(
+        "device memory is full: " + std::to_string((spilled + 999'999) / 1'000'000) +
+        " MB of geometry and object records lie in memory of the host, where drawing is slower");
   const vk::DescriptorBufferInfo info(*records_.buffer, 0, VK_WHOLE_SIZE);
   device_.device.updateDescriptorSets(
       vk::WriteDescriptorSet(frame_set_, 1, 0, vk::DescriptorType::eStorageBuffer, {}, info), {});

@@ -148,8 +148,14 @@ Result<void> Renderer::State::guarded(const Body& body) const {
 void Renderer::State::build(const Scene& source, const timeline::Player& player) {
   const auto samples = options.samples == 4 ? vk::SampleCountFlagBits::e4 : vk::SampleCountFlagBits::e1;
   const TextureSets sets = texture_sets(source);
-  memory.emplace(*device);
+  memory.emplace(*device, options.memory_faults);
   pipelines.emplace(*device, samples);
+  // Before the scene, which may lie in memory of the host where targets may not.
+  make_targets();
+  // Without shadows the map is one texel: every descriptor must name something.
+  const std::uint32_t side = options.shadows && options.outputs.color ? kShadowMapSide : 1;
+  shadow = make_target(*device, *memory, *pipelines, vkr::PassKind::shadow, {side, side},
+                       vk::SampleCountFlagBits::e1);
   scene.emplace(source, player, sets.of_material);
   gpu.emplace(*device, *memory, *pipelines, source, sets);
   gpu->upload_records(scene->all_records(player));
@@ -159,11 +165,6 @@ void Renderer::State::build(const Scene& source, const timeline::Player& player)
         player.emissive(id) != source.materials[i].emissive)
       gpu->set_material_colors(id, player.base_color(id), player.emissive(id));
   }
-  make_targets();
-  // Without shadows the map is one texel: every descriptor must name something.
-  const std::uint32_t side = options.shadows && options.outputs.color ? kShadowMapSide : 1;
-  shadow = make_target(*device, *memory, *pipelines, vkr::PassKind::shadow, {side, side},
-                       vk::SampleCountFlagBits::e1);
   gpu->bind_shadow_map(shadow->depth);
   costs = options.costs ? *options.costs : model::rough_costs(device->info.type == "CPU");
   strategy = find_strategy(options.strategy)->make(strategy_context());

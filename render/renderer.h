@@ -46,7 +46,8 @@ struct RendererOptions {
   std::uint32_t frames_in_flight = 2;
   /// For tests: times by pass on a CPU device too, where they mean nothing (it works when it likes).
   bool gpu_stages_on_cpu = false;
-  bool chunk_boxes = false;    ///< FrameResult::chunk_boxes are wanted
+  bool chunk_boxes = false;  ///< FrameResult::chunk_boxes are wanted
+  MemoryFaults memory_faults;
   bool full_barriers = false;  ///< a full barrier at every step: must give equal pictures
 };
 

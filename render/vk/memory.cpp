@@ -27,7 +27,7 @@ std::byte* Allocation::mapped() const {
   return block_ == nullptr || block_->mapped == nullptr ? nullptr : block_->mapped + offset_;
 }
 
-Memory::Memory(const Device& device) : device_(device) {}
+Memory::Memory(const Device& device, const MemoryFaults& faults) : device_(device), faults_(faults) {}
 Memory::~Memory() = default;
 
 namespace {
@@ -41,6 +41,7 @@ std::uint32_t memory_type(const vk::PhysicalDeviceMemoryProperties& properties, 
   vk::MemoryPropertyFlags wanted;
   switch (use) {
     case MemoryUse::device:
+    case MemoryUse::scene:
       wanted = Flag::eDeviceLocal;
       break;
     case MemoryUse::upload:
@@ -59,10 +60,45 @@ std::uint32_t memory_type(const vk::PhysicalDeviceMemoryProperties& properties, 
   throw vk::FeatureNotPresentError("no memory type fits");
 }
 
+/// A type for what does not fit device memory: not the device's own, else any that the host sees.
+std::uint32_t host_type(const vk::PhysicalDeviceMemoryProperties& properties, std::uint32_t allowed) {
+  for (const vk::MemoryPropertyFlags unwanted :
+       {vk::MemoryPropertyFlags{Flag::eDeviceLocal}, vk::MemoryPropertyFlags{}}) {
+    for (std::uint32_t i = 0; i < properties.memoryTypeCount; ++i) {
+      const vk::MemoryPropertyFlags has = properties.memoryTypes[i].propertyFlags;
+      if ((allowed >> i & 1U) != 0 && (has & Flag::eHostVisible) && !(has & unwanted)) return i;
+    }
+  }
+  throw vk::OutOfDeviceMemoryError("no memory of the host that the device could use either");
+}
+
 }  // namespace
 
+void Memory::take_from_device(std::uint64_t bytes) {
+  if (faults_.device_bytes != 0 && device_bytes_ + bytes > faults_.device_bytes)
+    throw vk::OutOfDeviceMemoryError("allocating device memory (fault injected)");
+  device_bytes_ += bytes;
+}
+
 Allocation Memory::allocate(const vk::MemoryRequirements& needs, MemoryUse use, bool image) {
+  if (++allocations_ == faults_.fail_at)
+    throw vk::OutOfDeviceMemoryError("allocating memory (fault injected)");
   const std::uint32_t type = memory_type(device_.memory_properties, needs.memoryTypeBits, use);
+  if (use != MemoryUse::scene) {
+    if (use == MemoryUse::device) take_from_device(needs.size);
+    return allocate_from(type, needs, image);
+  }
+  try {
+    take_from_device(needs.size);
+    return allocate_from(type, needs, image);
+  } catch (const vk::OutOfDeviceMemoryError&) {
+    Allocation out = allocate_from(host_type(device_.memory_properties, needs.memoryTypeBits), needs, image);
+    spilled_bytes_ += needs.size;
+    return out;
+  }
+}
+
+Allocation Memory::allocate_from(std::uint32_t type, const vk::MemoryRequirements& needs, bool image) {
   Allocation out;
   out.bytes_ = needs.size;
   const bool own_block = needs.size > kMemoryBlockBytes / 2;

@@ -15,6 +15,7 @@ namespace scenegen::render::vkr {
 
 enum class MemoryUse : std::uint8_t {
   device,    ///< fastest for the device
+  scene,     ///< the same, but of the host when the device has no more (D 2.4)
   upload,    ///< written by the processor, mapped
   readback,  ///< read by the processor, mapped, cached where possible
 };
@@ -81,7 +82,7 @@ struct ImageOptions {
 /// Throws vk::OutOfDeviceMemoryError and the like; the room's border turns them into errors.
 class Memory {
  public:
-  explicit Memory(const Device& device);
+  explicit Memory(const Device& device, const MemoryFaults& faults = {});
   ~Memory();
   Memory(const Memory&) = delete;
   Memory& operator=(const Memory&) = delete;
@@ -90,11 +91,19 @@ class Memory {
   [[nodiscard]] Image image(const ImageOptions& options);
   /// Bytes of all blocks taken from the driver.
   [[nodiscard]] std::uint64_t block_bytes() const;
+  /// Bytes for MemoryUse::scene that lie in memory of the host.
+  [[nodiscard]] std::uint64_t spilled_bytes() const { return spilled_bytes_; }
 
  private:
   Allocation allocate(const vk::MemoryRequirements& needs, MemoryUse use, bool image);
+  Allocation allocate_from(std::uint32_t type, const vk::MemoryRequirements& needs, bool image);
+  void take_from_device(std::uint64_t bytes);
 
   const Device& device_;
+  MemoryFaults faults_;
+  std::uint64_t allocations_ = 0;
+  std::uint64_t device_bytes_ = 0;  // for faults_ only
+  std::uint64_t spilled_bytes_ = 0;
   std::list<Allocation::Block> blocks_;
 };
 

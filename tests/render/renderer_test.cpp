@@ -410,6 +410,89 @@ TEST_CASE("renderers share a device and take turns; without readback there are n
   for (const std::string& message : renderers[0].take_validation_messages()) FAIL_CHECK(message);
 }
 
+TEST_CASE("memory that runs out at any allocation is a clear error, or a slower way is taken") {
+  const Scene scene = wall_scene();
+  RendererOptions options = test_options();
+  options.shadows = true;
+  auto device = share_device(options.device);
+  REQUIRE(device);
+  options.shared_device = *device;
+  const View view = look({0, 2, 9}, {0, 1, 0}, options.size);
+  for (const char* strategy : {"inline", "octree", "queries-all"}) {
+    options.strategy = strategy;
+    std::uint64_t n = 1;
+    std::size_t at_creation = 0, while_drawing = 0;
+    for (bool failed = true; failed; ++n) {
+      REQUIRE(n < 200);
+      INFO(strategy << ", allocation " << n);
+      options.memory_faults.fail_at = n;
+      timeline::Player player(timeline::compile(scene));
+      auto renderer = Renderer::create(scene, player, options);
+      std::optional<Error> error;
+      if (!renderer) {
+        error = renderer.error();
+        ++at_creation;
+      }
+      FrameResult frame;
+      for (int i = 0; i < 4 && !error; ++i) {
+        if (auto done = renderer->submit(player.seek(i), player, view); !done) error = done.error();
+        if (error) {
+          ++while_drawing;
+        } else {
+          REQUIRE(renderer->finish(frame));
+        }
+      }
+      // A strategy that goes on as inline says so.
+      failed = error.has_value() || !renderer->warnings().empty();
+      if (renderer) {  // the device is shared: these are of failed creations too
+        for (const std::string& message : renderer->take_validation_messages()) FAIL_CHECK(message);
+      }
+      if (error) {
+        CHECK(error->kind == ErrorKind::no_device);
+        CHECK(error->str().find("fault injected") != std::string::npos);
+        CHECK(error->str().find('\n') == std::string::npos);
+      }
+    }
+    CHECK(at_creation > 8);
+    CHECK(while_drawing >= 3);  // staging memory, pictures to read
+  }
+}
+
+TEST_CASE("a scene that does not fit device memory lies in the host's, and looks the same") {
+  Scene scene = wall_scene();
+  Geometry large = box_geometry();  // the same box many times: about a megabyte
+  const Geometry box = large;
+  for (std::uint32_t i = 1; i < 800; ++i) {
+    large.positions_m.insert(large.positions_m.end(), box.positions_m.begin(), box.positions_m.end());
+    large.normals.insert(large.normals.end(), box.normals.begin(), box.normals.end());
+    large.texcoords[0].insert(large.texcoords[0].end(), box.texcoords[0].begin(), box.texcoords[0].end());
+  }
+  add_object(scene, "large", add_mesh(scene, large, plain({0.2F, 0.3F, 0.9F, 1})), {-3, 0.5F, 2});
+  RendererOptions options = test_options();
+  const View view = look({0, 2, 9}, {0, 1, 0}, options.size);
+  const FrameResult wanted = render_one(scene, view, options, 3);
+  bool spilled = false, refused = false;
+  for (std::uint64_t bytes = 100'000; bytes <= 3'200'000; bytes += 100'000) {
+    options.memory_faults.device_bytes = bytes;
+    timeline::Player again(timeline::compile(scene));
+    auto renderer = Renderer::create(scene, again, options);
+    if (!renderer) {  // not even the pictures fit
+      refused = true;
+      CHECK(renderer.error().kind == ErrorKind::no_device);
+      continue;
+    }
+    if (renderer->warnings().empty()) continue;
+    spilled = true;
+    CHECK(renderer->warnings()[0].find("memory of the host") != std::string::npos);
+    REQUIRE(renderer->submit(again.seek(3), again, view));
+    FrameResult frame;
+    REQUIRE(renderer->finish(frame));
+    CHECK(same_bits(frame, wanted));
+  }
+  CHECK(refused);
+  CHECK(spilled);
+}
+
 TEST_CASE("an empty scene is sky; one sample works; wrong options are errors") {
   Scene empty;
   RendererOptions options = test_options();
