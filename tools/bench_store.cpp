@@ -90,7 +90,7 @@ std::string RunStore::path(const BenchCase& what, std::uint32_t repetition) cons
   std::array<char, 40> tail{};
   (void)std::snprintf(tail.data(), tail.size(), "_%016llx_%u",
                       static_cast<unsigned long long>(hash(what.key())), repetition);
-  return (fs::path(folder_) / (name + tail.data() + std::string(kSuffix))).string();
+  return (fs::path(folder_) / name.append(tail.data()).append(kSuffix)).string();
 }
 
 ordered_json RunStore::settings_of(const BenchCase& what) const {

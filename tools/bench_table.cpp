@@ -1,6 +1,7 @@
 // The table that a person reads.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 #include "tools/bench_results.h"
@@ -39,7 +40,7 @@ std::string per_frame(const CaseResult& result, std::uint64_t render::FrameRepor
   for (std::size_t i = 0; i < counter_fields().size(); ++i) {
     if (counter_fields()[i].value == counter)
       return human_count(static_cast<std::uint64_t>(
-          static_cast<double>(run.counters[i]) / static_cast<double>(run.frame_ms.size()) + 0.5));
+          std::llround(static_cast<double>(run.counters[i]) / static_cast<double>(run.frame_ms.size()))));
   }
   return "-";
 }

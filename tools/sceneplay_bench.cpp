@@ -43,6 +43,7 @@ struct BenchRequest {
 
 std::string spell_ways(const std::vector<BenchWay>& ways) {
   std::vector<std::string> labels;
+  labels.reserve(ways.size());
   for (const BenchWay& way : ways) labels.push_back(way.label);
   return join(labels, ",");
 }
@@ -85,6 +86,7 @@ Value in_flight_value(std::vector<std::uint32_t>& target) {
 /// Evenly over the timeline, both ends included; a scene that does not change has one moment.
 std::vector<double> even_moments(std::uint32_t frames, double duration_s) {
   std::vector<double> out;
+  out.reserve(frames);
   for (std::uint32_t i = 0; i < frames; ++i)
     out.push_back(frames == 1 ? 0.0 : duration_s * i / static_cast<double>(frames - 1));
   return out;
