@@ -113,10 +113,12 @@ Result<std::optional<BenchRun>> RunStore::find(const BenchCase& what, std::uint3
   for (const auto& [name, value] : settings.items()) {
     const ordered_json then =
         json["settings"].is_object() ? json["settings"].value(name, ordered_json()) : ordered_json();
-    if (then != value)
-      return fail(ErrorKind::usage, "--resume",
-                  from + " was measured with " + name + " " + then.dump() + ", now it is " + value.dump() +
-                      "; without --resume everything is measured anew");
+    if (then == value) continue;
+    std::string what_differs = from;
+    what_differs.append(" was measured with ").append(name).append(" ").append(then.dump());
+    what_differs.append(", now it is ").append(value.dump());
+    return fail(ErrorKind::usage, "--resume",
+                what_differs + "; without --resume everything is measured anew");
   }
   return BenchRun::from_json(json["run"]);
 }

@@ -78,6 +78,7 @@ Value in_flight_value(std::vector<std::uint32_t>& target) {
           },
           [&target] {
             std::vector<std::string> words;
+            words.reserve(target.size());
             for (const std::uint32_t n : target) words.push_back(std::to_string(n));
             return join(words, ",");
           }};
