@@ -194,8 +194,9 @@ class Builder {
     const auto columns =
         static_cast<std::uint32_t>(std::max(1.0F, std::ceil(std::sqrt(static_cast<float>(count) * aspect))));
     const std::uint32_t rows = (count + columns - 1) / columns;
+    const std::uint32_t row = i / columns;
     const float x = (static_cast<float>(i % columns) + 0.5F) / static_cast<float>(columns) - 0.5F;
-    const float y = (static_cast<float>(i / columns) + 0.5F) / static_cast<float>(rows) - 0.5F;
+    const float y = (static_cast<float>(row) + 0.5F) / static_cast<float>(rows) - 0.5F;
     const float h = 0.9F * height_m(distance_m);
     return {x * h * aspect, y * h, -distance_m};
   }
