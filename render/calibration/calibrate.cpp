@@ -76,7 +76,8 @@ class Fit {
   void shadows(const Run& with, const Run& without);
   void kept(const Run& inline_run, const std::vector<std::pair<std::uint32_t, Run>>& runs);
   void listed(const Run& run);
-  void queries(const Run& flat, const Run& each, const Run& asking);
+  void queries(const Run& flat, const Run& each);
+  void second_part(const Run& kept, const Run& asking);
   void indirect(const Run& fine, const Run& coarse);
   void finish();
 
@@ -332,7 +333,7 @@ void Fit::listed(const Run& run) {
           }));
 }
 
-void Fit::queries(const Run& flat, const Run& each, const Run& asking) {
+void Fit::queries(const Run& flat, const Run& each) {
   // A query for each of many boxes that are hardly seen: beyond drawing them.
   const auto asked = [&](std::size_t i) { return static_cast<double>(each.results[i].report.queries); };
   const double both_s = positive("askS", slope(each, Trial::boxes, asked, [&](std::size_t i) {
@@ -346,25 +347,28 @@ void Fit::queries(const Run& flat, const Run& each, const Run& asking) {
   set("askS", c_.ask_s, both_s - c_.receive_s);
   set("queryS", c_.query_s,
       slope(each, Trial::boxes, asked, [&](std::size_t i) { return each.device_s(i) - flat.device_s(i); }));
-  // Behind a wall: the same number of draws, skipped. The wall itself is what a layer costs.
-  const double wall_s = (c_.fragment_s[0].at(1.0) - c_.background_s) * pixels_;
+}
+
+/// Boxes behind a wall, asked about and skipped, against the same drawn from the same kept commands: the wall
+/// and all that a frame costs besides are in both.
+void Fit::second_part(const Run& kept, const Run& asking) {
+  const double draw_s = c_.draw_s[static_cast<std::size_t>(Shading::plain)].line_at(36.0);
   std::vector<double> skipped, device_s, cpu_s;
   for (const std::size_t i : asking.of(Trial::hidden_boxes)) {
     const FrameReport& r = asking.results[i].report;
-    if (r.believed_hidden == 0) continue;
+    if (r.believed_hidden == 0 || kept.results[i].samples == 0) continue;
     const double share = static_cast<double>(r.believed_hidden) / static_cast<double>(r.secondaries);
-    skipped.push_back(share * asking.step(i).draws);
-    const auto executed = static_cast<double>(r.secondaries);
-    device_s.push_back(asking.device_s(i) - wall_s - static_cast<double>(r.queries) * c_.query_s -
-                       executed * c_.secondary_device_s);
-    cpu_s.push_back(asking.record_s(i) - static_cast<double>(r.queries) * (c_.ask_s + c_.receive_s) -
-                    executed * c_.secondary_s.line_at(asking.step(i).draws / executed));
+    const double draws = share * asking.step(i).draws;
+    const auto queries = static_cast<double>(r.queries);
+    skipped.push_back(draws);
+    device_s.push_back(asking.device_s(i) - kept.device_s(i) + draws * draw_s - queries * c_.query_s);
+    cpu_s.push_back(asking.record_s(i) - kept.record_s(i) - queries * (c_.ask_s + c_.receive_s));
   }
   if (skipped.size() < 2) return;
   const Line device = calibration::fit_line(skipped, device_s);
   set("skippedDrawS", c_.skipped_draw_s, device.slope);
   set("secondPartDeviceS", c_.second_part_device_s, device.offset);
-  set("secondPartCpuS", c_.second_part_cpu_s, cpu_s.front());
+  set("secondPartCpuS", c_.second_part_cpu_s, *std::min_element(cpu_s.begin(), cpu_s.end()));
 }
 
 void Fit::indirect(const Run& fine, const Run& coarse) {
@@ -470,7 +474,9 @@ Result<void> measure_octrees(Runs& runs, const Run& flat, bool quick, Fit& fit) 
   const std::vector<std::uint32_t> sizes =
       quick ? std::vector<std::uint32_t>{kAsked} : std::vector<std::uint32_t>{10, kAsked, 1000};
   for (const std::uint32_t n : sizes) {
-    Result<Run> run = runs.run("octree", n, false, quick ? 0.2 : 0.09, boxes);
+    Result<Run> run = runs.run("octree", n, false, quick ? 0.2 : 0.09, [&](const Step& s) {
+      return boxes(s) || (n == kAsked && s.trial == Trial::hidden_boxes);
+    });
     if (!run) return forward_error(run);
     kept.emplace_back(n, std::move(*run));
   }
@@ -481,7 +487,9 @@ Result<void> measure_octrees(Runs& runs, const Run& flat, bool quick, Fit& fit) 
     return s.trial == Trial::empty || s.trial == Trial::hidden_boxes;
   });
   if (!asking) return forward_error(asking);
-  fit.queries(flat, *each, *asking);
+  fit.queries(flat, *each);
+  const auto same = std::find_if(kept.begin(), kept.end(), [](const auto& k) { return k.first == kAsked; });
+  fit.second_part(same->second, *asking);
   if (quick) return {};
   runs.use(NodeForm::indirect);
   Result<Run> fine = runs.run("octree", 10, false, 0.05, boxes);
