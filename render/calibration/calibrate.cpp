@@ -354,6 +354,7 @@ void Fit::queries(const Run& flat, const Run& each) {
 void Fit::second_part(const Run& kept, const Run& asking) {
   const double draw_s = c_.draw_s[static_cast<std::size_t>(Shading::plain)].line_at(36.0);
   std::vector<double> skipped, device_s, cpu_s;
+  bool timed = true;
   for (const std::size_t i : asking.of(Trial::hidden_boxes)) {
     const FrameReport& r = asking.results[i].report;
     if (r.believed_hidden == 0 || kept.results[i].samples == 0) continue;
@@ -361,7 +362,12 @@ void Fit::second_part(const Run& kept, const Run& asking) {
     const double draws = share * asking.step(i).draws;
     const auto queries = static_cast<double>(r.queries);
     skipped.push_back(draws);
-    device_s.push_back(asking.device_s(i) - kept.device_s(i) + draws * draw_s - queries * c_.query_s);
+    const double second_part_ms = r.gpu_stages_ms[static_cast<std::size_t>(GpuStage::second_part)];
+    timed = timed && second_part_ms >= 0.0;
+    // Boxes behind the wall may be drawn while the wall is shaded, and cost nothing then: where the device
+    // tells how long the second part took, that is the better figure.
+    device_s.push_back(timed ? second_part_ms * 1e-3
+                             : asking.device_s(i) - kept.device_s(i) + draws * draw_s - queries * c_.query_s);
     cpu_s.push_back(asking.record_s(i) - kept.record_s(i) - queries * (c_.ask_s + c_.receive_s));
   }
   if (skipped.size() < 2) return;
