@@ -276,7 +276,8 @@ void Fit::kept(const Run& flat, const std::vector<std::pair<std::uint32_t, Run>>
   std::vector<std::pair<double, double>> sending;
   std::vector<double> chunks{0.0};
   std::vector<double> chunk_s{0.0};
-  for (const auto& [n, run] : runs) {
+  for (const auto& one : runs) {
+    const Run& run = one.second;
     const auto boxes = run.of(Trial::boxes);
     if (boxes.empty()) continue;
     const FrameReport& last = run.results[boxes.back()].report;
@@ -299,15 +300,15 @@ void Fit::kept(const Run& flat, const std::vector<std::pair<std::uint32_t, Run>>
   set("secondaryDeviceS", c_.secondary_device_s, calibration::fit_line(chunks, chunk_s).slope);
 
   // The fewest command buffers: their own cost shows least. And the smallest nodes, for walking.
-  const auto& [most_n, coarse] = runs.back();
+  const Run& coarse = runs.back().second;
   const auto drawn = [&](std::size_t i) {
     return static_cast<double>(coarse.results[i].first_report.recorded_draws);
   };
   set("recordKeptS", c_.record_kept_s, slope(coarse, Trial::boxes, drawn, [&](std::size_t i) {
         return coarse.results[i].first.record_s - coarse.results[i].steady.record_s;
       }));
-  const auto& [least_n, fine] = runs.front();
-  const auto levels = [&, n = least_n](std::size_t i) {
+  const Run& fine = runs.front().second;
+  const auto levels = [&, n = runs.front().first](std::size_t i) {
     return fine.step(i).draws * std::max(1.0, model::octree_height(fine.step(i).draws, n));
   };
   set("intersectS", c_.intersect_s, slope(fine, Trial::boxes, levels, [&](std::size_t i) {

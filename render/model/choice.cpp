@@ -106,6 +106,7 @@ void Choice::pass(double elapsed, double frame_s) {
   since_trial_ += elapsed;
   trial_left_ = std::max(0.0, trial_left_ - elapsed);
   penalty_ *= std::pow(0.995, elapsed);
+  if (trial_purse_s_ < 0.0) trial_purse_s_ = options_.advance_frames * frame_s;
   trial_purse_s_ += options_.trial_share * elapsed * frame_s;
 }
 

@@ -150,6 +150,20 @@ TEST_CASE("what the model gets wrong is learned from frames that were taken") {
   CHECK(blind.changes == 0);
 }
 
+TEST_CASE("a first trial is paid in advance, later ones are saved up for") {
+  // Changing costs 60 ms; of frames of 8 ms, 1 % would pay for that after 800.
+  const auto changes = [](const ChoiceOptions& options, int frames) {
+    Machine machine;
+    Replay replay(options);
+    for (int i = 0; i < frames; ++i) replay.frame(machine, {8e-3, 8.4e-3}, {8e-3, 9e-3}, 0.06);
+    return replay.changes;
+  };
+  CHECK(changes({}, 40) == 2);  // there and back
+  CHECK(changes({}, 400) == 2);
+  CHECK(changes({.advance_frames = 0}, 400) == 0);
+  CHECK(changes({.trial_share = 0}, 400) == 0);
+}
+
 TEST_CASE("the correction is bounded, slow, and tells the machine from the way") {
   Correction c;
   const Sides predicted{1e-3, 2e-3};
