@@ -15,6 +15,7 @@
 #include "render/model/choice.h"
 #include "render/model/unit_costs.h"
 #include "render/node_overlay.h"
+#include "render/plan_counters.h"
 #include "render/strategy_options.h"
 #include "render/view.h"
 #include "scene/result.h"
@@ -51,26 +52,12 @@ struct RendererOptions {
   bool full_barriers = false;  ///< a full barrier at every step: must give equal pictures
 };
 
-/// What one frame did; times in ms.
-struct FrameReport {
+/// What one frame did; times in ms. Stages of the base are parts of record_ms.
+struct FrameReport : PlanCounters {
   double time_s = 0;
   std::uint64_t objects = 0;
-  std::uint64_t changed = 0;            ///< entries of the ChangeSet
-  std::uint64_t visible = 0;            ///< objects visible by timeline
-  std::uint64_t tested = 0;             ///< boxes tested against the frustum
-  std::uint64_t nodes = 0;              ///< octree nodes visited
-  std::uint64_t tree_nodes = 0;         ///< nodes that the octree has
-  std::uint64_t chunks = 0;             ///< of the octree, in the frustum
-  std::uint64_t secondaries = 0;        ///< kept command buffers executed, in all passes but the shadows'
-  std::uint64_t recorded = 0;           ///< kept chunks recorded, or written for indirect draws, anew
-  std::uint64_t recorded_draws = 0;     ///< draw commands in those
-  std::uint64_t indirect_commands = 0;  ///< indirect draw commands in the place of secondaries
-  std::uint64_t queries = 0;            ///< occlusion queries sent, in all passes
-  std::uint64_t believed_hidden = 0;    ///< of them about what was believed hidden
-  std::uint64_t answers = 0;            ///< results of earlier frames, read in this one
-  std::uint64_t found_hidden = 0;       ///< results of earlier frames, read in this one, that say hidden
-  std::uint64_t reveals = 0;            ///< those that say visible of what was believed hidden
-  std::uint64_t drawn = 0;      ///< slots (object x primitive) that the strategy drew in the colour pass
+  std::uint64_t changed = 0;    ///< entries of the ChangeSet
+  std::uint64_t visible = 0;    ///< objects visible by timeline
   std::uint64_t draws = 0;      ///< draw commands of the colour pass, without the sky
   std::uint64_t triangles = 0;  ///< of the colour pass, without the sky
   std::uint64_t shadow_draws = 0;
@@ -82,11 +69,7 @@ struct FrameReport {
   double update_octree_ms = 0;  ///< of it the strategy's own part, T_upd(H)
   double plan_ms = 0;           ///< culling and sorting
   double record_ms = 0;
-  double upload_ms = 0;       ///< of it copying what changed to staging memory
-  double keep_ms = 0;         ///< of it recording chunks that are kept, T_buf(H_upd), and finding the others
-  double secondaries_ms = 0;  ///< of it executing kept chunks, T_sec
-  double ask_ms = 0;          ///< of it recording queries, T_buf(H_q), and choosing what to ask
-  double receive_ms = 0;      ///< of it reading results of queries, T_recv
+  double upload_ms = 0;  ///< of it copying what changed to staging memory
   double submit_ms = 0;
   double wait_ms = 0;  ///< what the processor waited for the device
   double gpu_ms = -1;  ///< between the frame's timestamps; -1 when the device has none

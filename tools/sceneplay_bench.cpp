@@ -16,6 +16,7 @@
 #include "tools/output.h"
 #include "tools/sceneplay.h"
 #include "tools/trace.h"
+#include "tools/verb.h"
 
 namespace scenegen::tools {
 namespace {
@@ -388,21 +389,19 @@ int bench_verb(std::span<const std::string> arguments) {
       "A:late is A with --late-visibility, A:n=100 with --octree-n 100, A:indirect and A:secondaries "
       "with that --node-form.");
   add_options(options, request);
-  const Result<Action> action = options.parse(arguments);
-  if (!action) return report_error(action.error());
-  if (*action != Action::run) {
-    const auto written =
-        write_stdout(*action == Action::help ? options.help(colored(1)) : "sceneplay " SCENEGEN_VERSION "\n");
-    return written ? 0 : report_error(written.error());
-  }
-  if (request.folder.empty())
-    return report_error({ErrorKind::usage, "--output", "missing (usage: sceneplay bench FILE... -o DIR)"});
-  if (options.given("--times") && options.given("--frames"))
-    return report_error({ErrorKind::usage, "--times", "has no place beside --frames"});
-  if (options.given("--camera") && options.given("--camera-path"))
-    return report_error({ErrorKind::usage, "--camera", "has no place beside --camera-path"});
-  const Result<void> measured = measure(request);
-  return measured ? 0 : report_error(measured.error());
+  const auto check = [&]() -> Result<void> {
+    if (request.folder.empty())
+      return fail(ErrorKind::usage, "--output", "missing (usage: sceneplay bench FILE... -o DIR)");
+    if (options.given("--times") && options.given("--frames"))
+      return fail(ErrorKind::usage, "--times", "has no place beside --frames");
+    if (options.given("--camera") && options.given("--camera-path"))
+      return fail(ErrorKind::usage, "--camera", "has no place beside --camera-path");
+    return {};
+  };
+  return run_verb(options, arguments, {.check = check, .work = [&]() -> Result<int> {
+                                         Result<void> measured = measure(request);
+                                         return measured ? Result<int>(0) : forward_error(measured);
+                                       }});
 }
 
 }  // namespace scenegen::tools

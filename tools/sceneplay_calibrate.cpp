@@ -9,6 +9,7 @@
 #include "tools/calibrations.h"
 #include "tools/output.h"
 #include "tools/sceneplay.h"
+#include "tools/verb.h"
 
 namespace scenegen::tools {
 namespace {
@@ -124,15 +125,10 @@ int calibrate_verb(std::span<const std::string> arguments) {
               "a discrete GPU, else any");
   options.group("General");
   options.add_general(r.quiet);
-  const Result<Action> action = options.parse(arguments);
-  if (!action) return report_error(action.error());
-  if (*action != Action::run) {
-    const auto written =
-        write_stdout(*action == Action::help ? options.help(colored(1)) : "sceneplay " SCENEGEN_VERSION "\n");
-    return written ? 0 : report_error(written.error());
-  }
-  const Result<void> done = run(r);
-  return done ? 0 : report_error(done.error());
+  return run_verb(options, arguments, {.work = [&]() -> Result<int> {
+                    Result<void> done = run(r);
+                    return done ? Result<int>(0) : forward_error(done);
+                  }});
 }
 
 }  // namespace scenegen::tools

@@ -20,6 +20,7 @@
 #include "tools/output.h"
 #include "tools/sceneplay.h"
 #include "tools/trace.h"
+#include "tools/verb.h"
 
 namespace scenegen::tools {
 
@@ -334,21 +335,19 @@ int frames_verb(std::span<const std::string> arguments) {
   Options options("sceneplay frames", {"sceneplay frames FILE -o DIR [options]"},
                   "plays a file and writes one picture a frame.");
   add_options(options, request);
-  const Result<Action> action = options.parse(arguments);
-  if (!action) return report_error(action.error());
-  if (*action != Action::run) {
-    const auto written =
-        write_stdout(*action == Action::help ? options.help(colored(1)) : "sceneplay " SCENEGEN_VERSION "\n");
-    return written ? 0 : report_error(written.error());
-  }
-  if (request.folder.empty())
-    return report_error({ErrorKind::usage, "--output", "missing (usage: sceneplay frames FILE -o DIR)"});
-  if (options.given("--times") && (options.given("--fps") || options.given("--duration")))
-    return report_error({ErrorKind::usage, "--times", "has no place beside --fps and --duration"});
-  if (options.given("--camera") && options.given("--camera-path"))
-    return report_error({ErrorKind::usage, "--camera", "has no place beside --camera-path"});
-  const Result<void> drawn = draw(request, options);
-  return drawn ? 0 : report_error(drawn.error());
+  const auto check = [&]() -> Result<void> {
+    if (request.folder.empty())
+      return fail(ErrorKind::usage, "--output", "missing (usage: sceneplay frames FILE -o DIR)");
+    if (options.given("--times") && (options.given("--fps") || options.given("--duration")))
+      return fail(ErrorKind::usage, "--times", "has no place beside --fps and --duration");
+    if (options.given("--camera") && options.given("--camera-path"))
+      return fail(ErrorKind::usage, "--camera", "has no place beside --camera-path");
+    return {};
+  };
+  return run_verb(options, arguments, {.check = check, .work = [&]() -> Result<int> {
+                                         Result<void> drawn = draw(request, options);
+                                         return drawn ? Result<int>(0) : forward_error(drawn);
+                                       }});
 }
 
 }  // namespace scenegen::tools

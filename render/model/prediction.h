@@ -35,10 +35,8 @@ struct Load {
 /// Counts of one frame. Those of the way that was taken are exact; the others are estimates (`exact` says
 /// which part holds).
 struct FrameFacts {
-  double objects = 0;
   double visible_slots = 0;  ///< by timeline
   double changed = 0;        ///< entries of the ChangeSet
-  double moved = 0;          ///< of them with another box
   double screen_pixels = 0;  ///< times samples where shading is by sample
   double shadow_slots = 0;   ///< drawn into the shadow map, in runs; the same for all ways
   double shadow_vertices = 0;

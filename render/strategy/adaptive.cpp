@@ -248,7 +248,6 @@ void Adaptive::gather(const View& view) {
       tree_->plan(view);
       model::FrameFacts kept;
       tree_->foresee(kept);
-      kept.objects = facts_.objects;
       kept.visible_slots = facts_.visible_slots;
       kept.screen_pixels = facts_.screen_pixels;
       kept.visible = facts_.visible;

@@ -36,7 +36,6 @@ void CachedOctree::choose_form() {
 
 void CachedOctree::update(const timeline::ChangeSet& changes) {
   changed_ = changes.count();
-  moved_ = changes.moved.size();
   inline_ ? inline_->update(changes) : octree_->update(changes);
 }
 
@@ -72,7 +71,6 @@ void CachedOctree::plan(const View& view) {
 
 void CachedOctree::foresee(model::FrameFacts& facts) const {
   if (inline_) return;
-  facts.objects = static_cast<double>(scene_.object_count());
   facts.visible_slots = tree().root().content.slots;
   facts.height = model::octree_height(tree().root().content.slots, objects_per_node_);
   facts.nodes_visited = static_cast<double>(found_.nodes);
@@ -139,7 +137,6 @@ model::FrameFacts CachedOctree::facts() const {
   facts.blended = load_of_slots(scene_, list_.blended, screen);
   add_scene_facts(scene_, screen, facts);
   facts.changed = static_cast<double>(changed_);
-  facts.moved = static_cast<double>(moved_);
   foresee(facts);
   if (passes_ > 0) {  // otherwise what was foreseen stands
     facts.chunks_rerecorded = static_cast<double>(counters_.recorded) / recordings();
@@ -175,7 +172,7 @@ void CachedOctree::keep_secondaries(PassRecording& pass, std::span<const std::ui
 
 void CachedOctree::prepare(PassRecording& pass, std::span<const std::uint32_t> chunks,
                            vk::Buffer predicates) {
-  const StageTimer timer(counters_.times.keep_ms);
+  const StageTimer timer(counters_.keep_ms);
   if (!indirect_form_) return keep_secondaries(pass, chunks, predicates);
   // All at once, for all passes of the frame: staging memory is written once a frame.
   nodes_->update(pass.context(), tree(), chunks_, context_.options.reversed);
@@ -186,7 +183,7 @@ void CachedOctree::prepare(PassRecording& pass, std::span<const std::uint32_t> c
 
 void CachedOctree::execute(PassRecording& pass, std::span<const std::uint32_t> chunks,
                            vk::CommandBuffer last) {
-  const StageTimer timer(counters_.times.secondaries_ms);
+  const StageTimer timer(counters_.secondaries_ms);
   buffers_.clear();
   std::uint64_t draws = 0;
   std::uint64_t triangles = 0;
@@ -205,7 +202,7 @@ void CachedOctree::draw(PassRecording& pass, std::span<const std::uint32_t> chun
   if (!indirect_form_) {
     vk::CommandBuffer boxes;
     if (ask != nullptr) {
-      const StageTimer timer(counters_.times.ask_ms);
+      const StageTimer timer(counters_.ask_ms);
       boxes = ask->boxes(pass);
     }
     return execute(pass, chunks, boxes);
@@ -213,19 +210,19 @@ void CachedOctree::draw(PassRecording& pass, std::span<const std::uint32_t> chun
   DrawRecorder& recorder = pass.draws();
   const vk::Buffer counts = ask != nullptr ? ask->predicates() : vk::Buffer{};
   {
-    const StageTimer timer(counters_.times.secondaries_ms);
+    const StageTimer timer(counters_.secondaries_ms);
     for (std::size_t i = 0; i < chunks.size(); ++i)
       counters_.indirect_commands += nodes_->draw(recorder, in_order(chunks, i), counts, kLetPassOffset);
   }
   if (ask == nullptr) return;
-  const StageTimer timer(counters_.times.ask_ms);
+  const StageTimer timer(counters_.ask_ms);
   ask->draw_boxes(pass);
 }
 
 void CachedOctree::draw_under(PassRecording& pass, std::span<const std::uint32_t> chunks,
                               const Occlusion& predicates) {
   if (!indirect_form_) return execute(pass, chunks, {});
-  const StageTimer timer(counters_.times.secondaries_ms);
+  const StageTimer timer(counters_.secondaries_ms);
   DrawRecorder& recorder = pass.draws();
   for (std::size_t i = 0; i < chunks.size(); ++i) {
     const std::uint32_t chunk = in_order(chunks, i);

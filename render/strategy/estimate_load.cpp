@@ -142,7 +142,6 @@ model::Load load_of_chunks(const DrawScene& scene, const Octree& tree, std::span
 }
 
 void add_scene_facts(const DrawScene& scene, const ScreenArea& screen, model::FrameFacts& facts) {
-  facts.objects = static_cast<double>(scene.object_count());
   std::size_t visible = 0;
   for (const std::uint64_t bits : scene.visible().words())
     visible += static_cast<std::size_t>(std::popcount(bits));

@@ -44,7 +44,7 @@ class InlineQueries final : public ListStrategy {
     const bool color = recording.target().pass == vkr::PassKind::color;
     Pass& pass = passes_[color ? 0 : 1];
     {
-      const StageTimer timer(counters_.times.receive_ms);
+      const StageTimer timer(counters_.receive_ms);
       learn(pass, pass.occlusion->take_answers(context));
     }
     ask(pass, recording);
@@ -53,7 +53,7 @@ class InlineQueries final : public ListStrategy {
     if (color) counters_.drawn -= pass.hidden.size();
     DrawRecorder& recorder = recording.draws();
     for (const std::uint32_t slot : pass.drawn) recorder.draw(slot);
-    const StageTimer timer(counters_.times.ask_ms);
+    const StageTimer timer(counters_.ask_ms);
     pass.occlusion->draw_boxes(recording);
   }
 
@@ -84,7 +84,7 @@ class InlineQueries final : public ListStrategy {
   };
 
   void ask(Pass& pass, const PassRecording& recording) {
-    const StageTimer timer(counters_.times.ask_ms);
+    const StageTimer timer(counters_.ask_ms);
     const PassContext& context = recording.context();
     choose(pass, {recording.target().extent.width, recording.target().extent.height});
     pass.occlusion->reserve(context, pass.asked.size(), 0);

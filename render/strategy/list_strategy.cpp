@@ -9,7 +9,6 @@ namespace scenegen::render {
 
 void ListStrategy::update(const timeline::ChangeSet& changes) {
   changed_ = changes.count();
-  moved_ = changes.moved.size();
 }
 
 void ListStrategy::finish_plan(const View& view) {
@@ -39,7 +38,6 @@ model::FrameFacts ListStrategy::facts() const {
   const ScreenArea screen(view_, size_);
   add_scene_facts(scene_, screen, facts);
   facts.changed = static_cast<double>(changed_);
-  facts.moved = static_cast<double>(moved_);
   facts.blended = load_of_slots(scene_, list_.blended, screen);
   return facts;
 }

@@ -29,7 +29,7 @@ class ListStrategy : public Strategy {
   glm::uvec2 size_;
   View view_;  ///< of the last plan
   DrawList list_;
-  std::size_t changed_ = 0, moved_ = 0;  ///< in the last update
+  std::size_t changed_ = 0;  ///< in the last update
 };
 
 }  // namespace scenegen::render

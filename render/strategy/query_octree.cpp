@@ -30,7 +30,7 @@ void QueryOctree::draw_chunks(PassRecording& pass) {
   receive(kind, context);
   QueryPlan& plan = plans_[kind];
   {
-    const StageTimer timer(counters_.times.ask_ms);
+    const StageTimer timer(counters_.ask_ms);
     plan.clear();
     choose(kind, QueryBoxes(view(), {pass.target().extent.width, pass.target().extent.height}), plan);
     occlusion.reserve(context, plan.asked.size(), tree().chunk_numbers());
@@ -44,7 +44,7 @@ void QueryOctree::draw_chunks(PassRecording& pass) {
   prepare(pass, plan.first, occlusion.predicates());
   if (exact_) prepare(pass, plan.second, occlusion.predicates());
   {
-    const StageTimer timer(counters_.times.ask_ms);
+    const StageTimer timer(counters_.ask_ms);
     occlusion.begin_frame(context, plan.asked, plan.governed);
   }
   const bool two_parts = exact_ && !plan.second.empty();
@@ -53,14 +53,14 @@ void QueryOctree::draw_chunks(PassRecording& pass) {
   if (!two_parts) return;
   pass.end_first_part();
   {
-    const StageTimer timer(counters_.times.ask_ms);
+    const StageTimer timer(counters_.ask_ms);
     occlusion.set_predicates(context);
   }
   draw_under(pass, plan.second, occlusion);
 }
 
 void QueryOctree::receive(Kind kind, const PassContext& context) {
-  const StageTimer timer(counters_.times.receive_ms);
+  const StageTimer timer(counters_.receive_ms);
   const Occlusion::Answers answers = occlusion_[kind]->take_answers(context);
   counters_.answers += answers.asked.size();
   for (std::size_t i = 0; i < answers.asked.size(); ++i) {

@@ -12,6 +12,7 @@
 #include "render/model/choice.h"
 #include "render/model/prediction.h"
 #include "render/node_overlay.h"
+#include "render/plan_counters.h"
 #include "render/stage_timer.h"
 #include "render/strategy_options.h"
 #include "render/view.h"
@@ -43,31 +44,6 @@ struct FrameTimes {
   std::uint64_t serial = 0;  ///< frames are counted from 1
   double cpu_s = 0;
   double gpu_s = -1;
-};
-
-/// Parts of recording on the processor, in all passes (FrameReport names them); strategies add to them with
-/// StageTimer.
-struct StageTimes {
-  double keep_ms = 0, secondaries_ms = 0, ask_ms = 0, receive_ms = 0;
-};
-
-/// What planning and drawing found, for the frame report.
-struct PlanCounters {
-  std::uint64_t tested = 0;             ///< boxes tested against the frustum
-  std::uint64_t drawn = 0;              ///< slots that are drawn
-  std::uint64_t nodes = 0;              ///< octree nodes visited
-  std::uint64_t tree_nodes = 0;         ///< nodes that the octree has
-  std::uint64_t chunks = 0;             ///< of the octree, in the frustum
-  std::uint64_t secondaries = 0;        ///< cached secondary command buffers executed, in all passes
-  std::uint64_t recorded = 0;           ///< kept chunks recorded, or written for indirect draws, anew
-  std::uint64_t recorded_draws = 0;     ///< draw commands in those
-  std::uint64_t indirect_commands = 0;  ///< indirect draw commands in the place of secondaries
-  std::uint64_t queries = 0;            ///< occlusion queries sent, in all passes
-  std::uint64_t believed_hidden = 0;    ///< of them about what was believed hidden
-  std::uint64_t answers = 0;            ///< results of earlier frames, read in this one
-  std::uint64_t found_hidden = 0;       ///< results of earlier frames, read in this one, that say hidden
-  std::uint64_t reveals = 0;            ///< those that say visible of what was believed hidden
-  StageTimes times;
 };
 
 /// What a strategy that chooses among others took.

@@ -46,10 +46,8 @@ UnitCosts units() {
 /// Every pixel is covered once, so all fragments are shaded.
 FrameFacts facts() {
   FrameFacts f;
-  f.objects = 2000;
   f.visible_slots = 1000;
   f.changed = 8;
-  f.moved = 2;
   f.screen_pixels = 4000;
   f.visible = {900, 900 * 36, 1000, 0, 0.25};
   f.in_frustum = {100, 100 * 36, 1000, 0, 0.25};
