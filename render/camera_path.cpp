@@ -14,6 +14,9 @@ namespace {
 using nlohmann::json;
 using Channels = std::array<double, 7>;
 
+/// In the order of PathInterpolation.
+constexpr std::array<std::string_view, 3> kInterpolations{"linear", "catmull-rom", "step"};
+
 Channels channels(const CameraKey& k) {
   return {k.eye_m.x, k.eye_m.y, k.eye_m.z, k.target_m.x, k.target_m.y, k.target_m.z, k.yfov_rad};
 }
@@ -81,6 +84,7 @@ CameraKey CameraPath::at(double time_s) const {
                                      [](double t, const CameraKey& k) { return t < k.time_s; });
   const auto i = static_cast<std::size_t>(next - keys.begin()) - 1;
   const CameraKey& a = keys[i];
+  if (interpolation == PathInterpolation::step) return a;
   const CameraKey& b = keys[i + 1];
   const double length = b.time_s - a.time_s;
   const double u = (time_s - a.time_s) / length;
@@ -114,6 +118,23 @@ View CameraPath::view(double time_s, float aspect) const {
   return make_view(look_at(glm::vec3(key.eye_m), glm::vec3(key.target_m)), lens, aspect);
 }
 
+std::string camera_path_json(const CameraPath& path) {
+  using nlohmann::ordered_json;
+  const auto list = [](const glm::dvec3& v) { return ordered_json{v.x, v.y, v.z}; };
+  std::string out = "{\n  \"version\": 1,\n  \"interpolation\": \"";
+  out += kInterpolations[static_cast<std::size_t>(path.interpolation)];
+  out += "\",\n  \"near_m\": " + ordered_json(path.near_m).dump() + ",\n  \"keys\": [";
+  for (const CameraKey& key : path.keys) {
+    out += &key == &path.keys.front() ? "\n    " : ",\n    ";
+    out += ordered_json{{"time_s", key.time_s},
+                        {"eye_m", list(key.eye_m)},
+                        {"target_m", list(key.target_m)},
+                        {"yfov_rad", key.yfov_rad}}
+               .dump();
+  }
+  return out + "\n  ]\n}\n";
+}
+
 Result<CameraPath> parse_camera_path(std::string_view text, const std::string& name) {
   const json document = json::parse(text, nullptr, false);
   if (document.is_discarded()) return fail(ErrorKind::bad_input, name, "is not JSON");
@@ -124,11 +145,11 @@ Result<CameraPath> parse_camera_path(std::string_view text, const std::string& n
     return fail(ErrorKind::bad_input, name + ": /version", "must be 1");
   CameraPath path;
   if (const auto it = document.find("interpolation"); it != document.end()) {
-    if (*it == "linear") {
-      path.interpolation = PathInterpolation::linear;
-    } else if (*it != "catmull-rom") {
-      return fail(ErrorKind::bad_input, name + ": /interpolation", "must be \"catmull-rom\" or \"linear\"");
-    }
+    const auto known = std::find(kInterpolations.begin(), kInterpolations.end(), *it);
+    if (known == kInterpolations.end())
+      return fail(ErrorKind::bad_input, name + ": /interpolation",
+                  "must be \"linear\", \"catmull-rom\" or \"step\"");
+    path.interpolation = static_cast<PathInterpolation>(known - kInterpolations.begin());
   }
   if (document.contains("near_m")) {
     const auto near = number(document, "near_m");

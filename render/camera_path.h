@@ -18,7 +18,11 @@ struct CameraKey {
   double yfov_rad = 0.6;
 };
 
-enum class PathInterpolation : std::uint8_t { linear, catmull_rom };
+enum class PathInterpolation : std::uint8_t {
+  linear,
+  catmull_rom,
+  step  ///< each key holds until the next: cuts
+};
 
 /// At least one key, times strictly increasing.
 struct CameraPath {
@@ -30,6 +34,9 @@ struct CameraPath {
   [[nodiscard]] CameraKey at(double time_s) const;
   [[nodiscard]] View view(double time_s, float aspect) const;
 };
+
+/// What parse_camera_path() reads back, a line a key; ends with a newline.
+[[nodiscard]] std::string camera_path_json(const CameraPath& path);
 
 /// `name` is the file's, for errors, which point to the JSON value.
 [[nodiscard]] Result<CameraPath> parse_camera_path(std::string_view json, const std::string& name);

@@ -1,33 +1,19 @@
 #include "tools/drawing_options.h"
 
-#include <array>
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <string_view>
 
 #include "scene/limits.h"
 #include "tools/calibrations.h"
+#include "tools/camera_paths.h"
 
 namespace scenegen::tools {
 namespace {
 
 float aspect_of(glm::uvec2 size) {
   return static_cast<float>(size.x) / static_cast<float>(size.y);
-}
-
-Result<std::string> read_text(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  constexpr std::size_t kMost = std::size_t{64} << 20;
-  std::string out;
-  std::array<char, 65536> piece;
-  while (in && out.size() <= kMost) {
-    in.read(piece.data(), piece.size());
-    out.append(piece.data(), static_cast<std::size_t>(in.gcount()));
-  }
-  if (!in.eof() || out.size() > kMost)
-    return fail(ErrorKind::io, path, "cannot be read (or is above 64 MiB)");
-  return out;
 }
 
 Result<CameraId> find_camera(const Scene& scene, const std::string& wanted) {
@@ -136,15 +122,18 @@ Result<CameraMan> CameraMan::of_scene(const Scene& scene, const std::string& cam
   return man;
 }
 
-Result<CameraMan> CameraMan::of_path(const std::string& file, glm::uvec2 size) {
-  auto text = read_text(file);
-  if (!text) return forward_error(text);
-  auto path = render::parse_camera_path(*text, file);
+Result<CameraMan> CameraMan::of_path(const std::string& wanted, const Scene& scene, glm::uvec2 size) {
+  auto path = camera_path_of(wanted, scene);
   if (!path) return forward_error(path);
   CameraMan man;
   man.aspect_ = aspect_of(size);
   man.path_ = std::move(*path);
   return man;
+}
+
+double CameraMan::played_s(double duration_s) const {
+  if (duration_s > 0 || !path_) return duration_s;
+  return std::max(0.0, path_->keys.back().time_s);
 }
 
 render::View CameraMan::view(const timeline::Player& player) const {

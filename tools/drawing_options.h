@@ -49,8 +49,11 @@ class CameraMan {
   /// A camera of the scene by name or index, "auto" (frames all of it), or "" (the first one, else auto).
   [[nodiscard]] static Result<CameraMan> of_scene(const Scene& scene, const std::string& camera,
                                                   glm::uvec2 size);
-  /// A file as in docs/CAMERA_PATH.md.
-  [[nodiscard]] static Result<CameraMan> of_path(const std::string& file, glm::uvec2 size);
+  /// As --camera-path names it: docs/CAMERA_PATH.md.
+  [[nodiscard]] static Result<CameraMan> of_path(const std::string& wanted, const Scene& scene,
+                                                 glm::uvec2 size);
+  /// How long a scene with a timeline of `duration_s` is played: a still scene as long as the path moves.
+  [[nodiscard]] double played_s(double duration_s) const;
   [[nodiscard]] render::View view(const timeline::Player& player) const;
 
  private:

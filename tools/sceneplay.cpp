@@ -31,6 +31,7 @@ constexpr std::string_view kShortHelp =
     "  sceneplay frames FILE -o DIR     draws FILE to pictures, one file a frame\n"
     "  sceneplay bench FILE... -o DIR   measures how long frames take in several ways of drawing\n"
     "  sceneplay calibrate              measures what drawing costs on this machine\n"
+    "  sceneplay camera-path FILE PATH  writes a camera path that is made from FILE\n"
     "  sceneplay --list-devices         the Vulkan devices there are\n"
     "\n"
     "Example: sceneplay frames town.glb -o frames --times 25%,50%,100%\n"
@@ -46,11 +47,12 @@ int run(std::span<const std::string> arguments) {
   const std::string& first = arguments.front();
   if (first == "calibrate") return calibrate_verb(arguments.subspan(1));
   if (first == "frames") return frames_verb(arguments.subspan(1));
+  if (first == "camera-path") return camera_path_verb(arguments.subspan(1));
   if (first == "bench") return bench_verb(arguments.subspan(1));
   if (first == "--help" || first == "-h") return print(kShortHelp);
   if (first == "--version") return print("sceneplay " SCENEGEN_VERSION "\n");
   if (first == "--list-devices") return list_devices_verb();
-  const std::array<std::string, 3> verbs{"frames", "bench", "calibrate"};
+  const std::array<std::string, 4> verbs{"frames", "bench", "calibrate", "camera-path"};
   if (first.starts_with('-')) {
     const std::array<std::string, 3> options{"--help", "--version", "--list-devices"};
     return report_error({ErrorKind::usage, "", unknown_word("option", first, options)});

@@ -8,6 +8,7 @@ namespace scenegen::tools {
 
 int calibrate_verb(std::span<const std::string> arguments);
 int frames_verb(std::span<const std::string> arguments);
+int camera_path_verb(std::span<const std::string> arguments);
 int bench_verb(std::span<const std::string> arguments);
 /// Prints the Vulkan devices there are.
 int list_devices_verb();

@@ -11,6 +11,7 @@
 #include "tools/bench_case.h"
 #include "tools/bench_results.h"
 #include "tools/calibrations.h"
+#include "tools/camera_paths.h"
 #include "tools/drawing_options.h"
 #include "tools/frame_times.h"
 #include "tools/output.h"
@@ -162,21 +163,11 @@ class Bench {
   Result<void> run_file(const std::string& file) {
     std::vector<GroupResult> groups = groups_of(file);
     auto read = gltf::read(file, {});
-    Result<std::vector<double>> moments = std::vector<double>();
-    if (read) {
-      const auto duration_s = static_cast<double>(read->scene.duration_s);
-      const auto& calendar = read->scene.info.calendar;
-      moments = request_.times.empty()
-                    ? even_moments(request_.frames, duration_s)
-                    : parse_times(request_.times, duration_s, calendar ? &*calendar : nullptr);
-      if (!moments) moments.error().where = "--times";
-    }
     if (read) timeline_ = timeline::compile(read->scene);
     for (GroupResult& group : groups) {
-      if (!read || !moments) {
-        const Error& error = read ? moments.error() : read.error();
-        for (CaseResult& result : group.cases) failed(result, error);
-      } else if (auto done = run_group(read->scene, *moments, group); !done) {
+      if (!read) {
+        for (CaseResult& result : group.cases) failed(result, read.error());
+      } else if (auto done = run_group(read->scene, group); !done) {
         return done;
       }
       groups_.push_back(std::move(group));
@@ -185,12 +176,22 @@ class Bench {
     return {};
   }
 
-  Result<void> run_group(const Scene& scene, const std::vector<double>& moments, GroupResult& group) {
+  Result<std::vector<double>> moments_of(const Scene& scene, const CameraMan& camera) const {
+    const double duration_s = camera.played_s(static_cast<double>(scene.duration_s));
+    if (request_.times.empty()) return even_moments(request_.frames, duration_s);
+    const auto& calendar = scene.info.calendar;
+    auto moments = parse_times(request_.times, duration_s, calendar ? &*calendar : nullptr);
+    if (!moments) moments.error().where = "--times";
+    return moments;
+  }
+
+  Result<void> run_group(const Scene& scene, GroupResult& group) {
     const std::string& name = group.cases.front().what.camera;
     auto camera = request_.camera_paths.empty() ? CameraMan::of_scene(scene, name, request_.drawing.size)
-                                                : CameraMan::of_path(name, request_.drawing.size);
-    if (!camera) {
-      for (CaseResult& result : group.cases) failed(result, camera.error());
+                                                : CameraMan::of_path(name, scene, request_.drawing.size);
+    auto moments = camera ? moments_of(scene, *camera) : forward_error(camera);
+    if (!moments) {
+      for (CaseResult& result : group.cases) failed(result, moments.error());
       return {};
     }
     std::vector<BenchSeat> seats;
@@ -201,7 +202,7 @@ class Bench {
       // Another one begins each time: what drifts, and what one leaves behind for the next, hits all alike.
       for (std::size_t i = 0; i < count; ++i) {
         const std::size_t at = (i + repetition) % count;
-        if (auto done = run_case(seats[at], group.cases[at], moments, repetition); !done) return done;
+        if (auto done = run_case(seats[at], group.cases[at], *moments, repetition); !done) return done;
       }
     }
     return {};
@@ -335,12 +336,13 @@ void add_options(Options& options, BenchRequest& r) {
   options.add("--camera", text_value(r.camera, "NAME|INDEX", "a camera of the file, or auto"), "camera",
               Role::run, "the file's first, else auto");
   options.add("--camera-path",
-              texts_value(r.camera_paths, "FILE", {},
+              texts_value(r.camera_paths, "FILE|NAME", camera_path_range(),
                           [](const std::string& text) -> Result<void> {
                             if (text.empty()) return fail(ErrorKind::usage, "", "is empty");
                             return {};
                           }),
-              "camera path as JSON (docs/CAMERA_PATH.md); may be given several times");
+              "camera path: as JSON, or made from the scene (docs/CAMERA_PATH.md); may be given several "
+              "times");
   add_drawing_options(options, r.drawing, ways_value(r.ways), in_flight_value(r.frames_in_flight));
   add_device_options(options, r.drawing);
   options.group("General");
@@ -353,7 +355,7 @@ Result<void> measure(const BenchRequest& request) {
   if (!device) return forward_error(device);
   // Found out before anything is measured.
   for (const std::string& path : request.camera_paths) {
-    if (auto camera = CameraMan::of_path(path, request.drawing.size); !camera) return forward_error(camera);
+    if (auto known = check_camera_path(path); !known) return known;
   }
   std::error_code error;
   std::filesystem::create_directories(request.folder, error);

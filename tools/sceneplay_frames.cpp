@@ -14,6 +14,7 @@
 #include "timeline/calendar.h"
 #include "timeline/player.h"
 #include "tools/calibrations.h"
+#include "tools/camera_paths.h"
 #include "tools/drawing_options.h"
 #include "tools/frame_fields.h"
 #include "tools/frame_times.h"
@@ -41,9 +42,8 @@ struct FramesRequest {
   bool quiet = false;
 };
 
-Result<std::vector<double>> moments(const FramesRequest& request, const Options& options,
-                                    const Scene& scene) {
-  const auto duration_s = static_cast<double>(scene.duration_s);
+Result<std::vector<double>> moments(const FramesRequest& request, const Options& options, const Scene& scene,
+                                    double duration_s) {
   if (options.given("--times")) {
     const auto& calendar = scene.info.calendar;
     auto times = parse_times(request.times, duration_s, calendar ? &*calendar : nullptr);
@@ -240,11 +240,12 @@ Result<void> draw(const FramesRequest& request, const Options& options) {
   auto read = gltf::read(request.file, {});
   if (!read) return forward_error(read);
   const Scene& scene = read->scene;
-  auto times = moments(request, options, scene);
-  if (!times) return forward_error(times);
-  auto camera = request.camera_path.empty() ? CameraMan::of_scene(scene, request.camera, request.drawing.size)
-                                            : CameraMan::of_path(request.camera_path, request.drawing.size);
+  auto camera = request.camera_path.empty()
+                    ? CameraMan::of_scene(scene, request.camera, request.drawing.size)
+                    : CameraMan::of_path(request.camera_path, scene, request.drawing.size);
   if (!camera) return forward_error(camera);
+  auto times = moments(request, options, scene, camera->played_s(static_cast<double>(scene.duration_s)));
+  if (!times) return forward_error(times);
   timeline::Player player(timeline::compile(scene));
   render::RendererOptions how = renderer_options(request);
   if (auto costs = set_costs(how, request.drawing.calibration, request.quiet); !costs) return costs;
@@ -317,8 +318,8 @@ void add_options(Options& options, FramesRequest& r) {
               text_value(r.camera, "NAME|INDEX", "a camera of the file, or auto: frame the whole scene"),
               "camera; a file's camera may crop the scene at another shape of picture than it was made for",
               Role::run, "the file's first, else auto");
-  options.add("--camera-path", text_value(r.camera_path, "FILE"),
-              "camera path as JSON (docs/CAMERA_PATH.md)");
+  options.add("--camera-path", text_value(r.camera_path, "FILE|NAME", camera_path_range()),
+              "camera path: as JSON, or made from the scene (docs/CAMERA_PATH.md)");
   add_drawing_options(options, r.drawing, choice_value<std::string>(r.strategy, render::strategy_choices()),
                       choice_value<std::uint32_t>(r.frames_in_flight, {{"1", 1}, {"2", 2}, {"3", 3}}, "N"));
   add_device_options(options, r.drawing);
@@ -342,7 +343,7 @@ int frames_verb(std::span<const std::string> arguments) {
       return fail(ErrorKind::usage, "--times", "has no place beside --fps and --duration");
     if (options.given("--camera") && options.given("--camera-path"))
       return fail(ErrorKind::usage, "--camera", "has no place beside --camera-path");
-    return {};
+    return request.camera_path.empty() ? Result<void>() : check_camera_path(request.camera_path);
   };
   return run_verb(options, arguments, {.check = check, .work = [&]() -> Result<int> {
                                          Result<void> drawn = draw(request, options);

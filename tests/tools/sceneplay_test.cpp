@@ -197,6 +197,30 @@ TEST_CASE("frames: film, forms, camera path, clean under validation") {
   CHECK(read_file(folder.file("bmp/frame_00000.bmp")).starts_with("BM"));
 }
 
+TEST_CASE("a built-in camera path, and the file that is written of it, give the same pictures") {
+  const TemporaryFolder folder;
+  const std::string file = wall_file(folder);
+  const auto saved = play("camera-path " + file + " fly -o " + folder.file("fly.json"));
+  INFO(saved.err);
+  REQUIRE(saved.code == 0);
+  CHECK_THAT(saved.out, Catch::Matchers::Contains("7 keys  0 to "));
+  const std::string draw = "frames " + file + " --size 32x18 --shadows off -q --times 20%,70% --camera-path ";
+  REQUIRE(play(draw + "fly -o " + folder.file("a")).code == 0);
+  REQUIRE(play(draw + folder.file("fly.json") + " -o " + folder.file("b")).code == 0);
+  for (const char* name : {"/frame_00000.png", "/frame_00001.png"})
+    CHECK(read_file(folder.file("a") + name) == read_file(folder.file("b") + name));
+  CHECK(read_file(folder.file("a/frame_00000.png")) != read_file(folder.file("a/frame_00001.png")));
+  // A path of a file is written in the same form again.
+  const auto again = play("camera-path " + file + " " + folder.file("fly.json") + " -o -");
+  CHECK(again.out == read_file(folder.file("fly.json")));
+  check_error(play("camera-path " + file + " orbti -o x"), 2, "did you mean 'orbit'");
+  check_error(play("camera-path " + file + " orbit"), 2, "--output");
+  check_error(play("camera-path " + file + " orbit -o " + file), 2, "would overwrite");
+  check_error(play("camera-path " + folder.file("none.glb") + " orbit -o " + folder.file("x")), 3,
+              "none.glb");
+  CHECK_FALSE(std::filesystem::exists(folder.file("x")));
+}
+
 TEST_CASE("wrong calls: one line and the right exit code") {
   const TemporaryFolder folder;
   const std::string file = wall_file(folder);
@@ -214,6 +238,7 @@ TEST_CASE("wrong calls: one line and the right exit code") {
   check_error(play(start + "--camera auto --camera-path x"), 2, "--camera");
   check_error(play(start + "--camera-path " + folder.file("none.json")), 3, "none.json");
   check_error(play(start + "--camera-path " + file), 1, "wall.glb");
+  check_error(play(start + "--camera-path wlak"), 2, "did you mean 'walk'");
   check_error(play(start + "--strategy inlin"), 2, "inline");
   check_error(play(start + "--samples 2"), 2, "--samples");
   check_error(play(start + "--format gif"), 2, "--format");
