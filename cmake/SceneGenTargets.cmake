@@ -41,6 +41,14 @@ if(SCENEGEN_FUZZ)
   add_compile_options(-fsanitize=fuzzer-no-link)
 endif()
 
+# Sanitizers watch the code under test; that which calls it is a third of the whole build (560 of 1785 s of processor time) when
+# it is optimized as well, and a third less when not.
+function(scenegen_unoptimized_when_sanitized target)
+  if(SCENEGEN_SANITIZE)
+    target_compile_options(${target} PRIVATE -O0)
+  endif()
+endfunction()
+
 # scenegen_library(scene SOURCES a.cpp … LIBRARIES …): the static library of a room, target scenegen_<name>.
 function(scenegen_library name)
   cmake_parse_arguments(A "" "" "SOURCES;LIBRARIES" ${ARGN})
@@ -62,6 +70,7 @@ function(scenegen_test name)
   string(REPLACE "/" "_" target test_${name})
   add_executable(${target} ${A_SOURCES})
   target_link_libraries(${target} PRIVATE scenegen_settings scenegen_test_main ${A_LIBRARIES})
+  scenegen_unoptimized_when_sanitized(${target})
   add_test(NAME ${name} COMMAND ${target} ${A_ARGUMENTS})
   if(NOT name MATCHES "^render/|sceneplay" AND NOT A_LABELS)
     set(A_LABELS sanitized)
