@@ -322,6 +322,7 @@ void Renderer::State::predict(FrameReport& report) const {
   how.exact = !options.how.late_visibility;
   for (std::size_t m = 0; m < model::kMethods; ++m)
     report.predicted[m] = model::predict(static_cast<model::Method>(m), facts, costs, how);
+  report.facts = facts;
 }
 
 void Renderer::State::finish(FrameResult& out) {

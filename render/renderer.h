@@ -83,6 +83,7 @@ struct FrameReport : PlanCounters {
   double choose_ms = 0;            ///< what choosing took, part of plan_ms
   /// By model::Method, with RendererOptions::predictions; not corrected.
   std::array<model::Prediction, model::kMethods> predicted;
+  model::FrameFacts facts;  ///< what they were made from
 };
 
 /// Rows from the top. Pictures that were not asked for are empty.
