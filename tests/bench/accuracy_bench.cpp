@@ -3,7 +3,10 @@
 // corrected from what is measured here.
 //
 //   bench_accuracy CALIBRATION.json [--sets 5,8,14-22] [--seconds S] [--device NAME] [--csv FILE] [--explain]
+//                  [--dump FILE]
 //
+// --dump: a line of JSON for each set and way: medians of measured stages in ms, what the model was told, and
+// what it said.
 // Each set runs in a process of its own (some drivers refuse more than a few dozen instances in one).
 #include <algorithm>
 #include <array>
@@ -15,6 +18,7 @@
 #include <iterator>
 #include <string>
 #include <string_view>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "gen/generate.h"
@@ -34,7 +38,7 @@ constexpr std::array kMethods{Method::inline_frustum, Method::inline_queries, Me
                               Method::queries_all};
 
 struct Request {
-  std::string calibration, device, csv;
+  std::string calibration, device, csv, dump;
   std::vector<int> sets;
   double seconds = 1.0;  // of measuring each
   int one = 0;           // child: this set only
@@ -64,9 +68,79 @@ render::View view_of(const Scene& scene, const timeline::Player& player, glm::uv
   return render::frame_boxes(object_bounds(scene), aspect);
 }
 
+/// Stages of measured frames, ms.
+class StageSamples {
+ public:
+  void add(const render::FrameReport& r) {
+    const std::array values{r.update_ms, r.plan_ms,     r.record_ms, r.submit_ms,
+                            r.wait_ms,   r.readback_ms, r.gpu_ms,    r.choose_ms};
+    samples_.resize(values.size() + render::kGpuStages);
+    for (std::size_t i = 0; i < values.size(); ++i) samples_[i].push_back(values[i]);
+    for (std::size_t i = 0; i < render::kGpuStages; ++i)
+      samples_[values.size() + i].push_back(r.gpu_stages_ms[i]);
+  }
+  [[nodiscard]] nlohmann::ordered_json medians() const {
+    std::vector<std::string> names{"update", "plan", "record", "submit", "wait", "readback", "gpu", "choose"};
+    for (const std::string_view name : render::kGpuStageNames) names.push_back("gpu." + std::string(name));
+    nlohmann::ordered_json out;
+    for (std::size_t i = 0; i < samples_.size(); ++i) out[names[i]] = median(samples_[i]);
+    return out;
+  }
+
+ private:
+  std::vector<std::vector<double>> samples_;
+};
+
+nlohmann::ordered_json json_of(const render::model::Load& l) {
+  return {{"draws", l.draws},
+          {"vertices", l.vertices},
+          {"fragments", l.fragments},
+          {"texturedShare", l.textured_share},
+          {"screenShare", l.screen_share}};
+}
+
+nlohmann::ordered_json json_of(const render::model::FrameFacts& f) {
+  return {{"visibleSlots", f.visible_slots},
+          {"changed", f.changed},
+          {"screenPixels", f.screen_pixels},
+          {"blended", json_of(f.blended)},
+          {"visible", json_of(f.visible)},
+          {"inFrustum", json_of(f.in_frustum)},
+          {"height", f.height},
+          {"nodesVisited", f.nodes_visited},
+          {"boxesTested", f.boxes_tested},
+          {"chunks", f.chunks},
+          {"inChunks", json_of(f.in_chunks)},
+          {"chunksRerecorded", f.chunks_rerecorded},
+          {"drawsRerecorded", f.draws_rerecorded},
+          {"asked", f.asked},
+          {"askedFragments", f.asked_fragments},
+          {"chunksHidden", f.chunks_hidden},
+          {"hidden", json_of(f.hidden)},
+          {"allAskedFragments", f.all_asked_fragments},
+          {"allChunksHidden", f.all_chunks_hidden},
+          {"allHidden", json_of(f.all_hidden)},
+          {"slotsHidden", json_of(f.slots_hidden)}};
+}
+
+nlohmann::ordered_json json_of(const Prediction& p) {
+  return {{"update", p.update_s * 1e3},
+          {"updateOctree", p.update_octree_s * 1e3},
+          {"cull", p.cull_s * 1e3},
+          {"record", p.record_s * 1e3},
+          {"secondaries", p.secondaries_s * 1e3},
+          {"queriesCpu", p.queries_cpu_s * 1e3},
+          {"draw", p.draw_device_s * 1e3},
+          {"queries", p.query_device_s * 1e3},
+          {"cpu", p.cpu_s * 1e3},
+          {"gpu", p.gpu_s * 1e3},
+          {"frame", p.frame_s * 1e3}};
+}
+
 struct Times {
   double one_s = 0, two_s = 0;
   Prediction predicted;
+  nlohmann::ordered_json dump;
 };
 
 /// Frames of the scene at the end of its time, one after the other and two in flight.
@@ -82,6 +156,7 @@ Result<Times> measure(const Scene& scene, Method method, const render::RendererO
   const auto submit = [&] { return renderer->submit(player.seek(end_s), player, view); };
   std::vector<double> one_s;
   std::vector<double> two_s;
+  StageSamples one_stages, two_stages;
   const tools::Stopwatch all;
   // The first frames record what is kept and learn what is hidden.
   constexpr int kWarm = 6;
@@ -89,14 +164,18 @@ Result<Times> measure(const Scene& scene, Method method, const render::RendererO
     const tools::Stopwatch watch;
     if (Result<void> done = submit(); !done) return forward_error(done);
     if (Result<void> done = renderer->finish(frame); !done) return forward_error(done);
-    if (i >= kWarm) one_s.push_back(watch.seconds());
+    if (i < kWarm) continue;
+    one_s.push_back(watch.seconds());
+    one_stages.add(frame.report);
   }
   if (Result<void> done = submit(); !done) return forward_error(done);
   for (std::size_t i = 0; i < std::max<std::size_t>(4, one_s.size()); ++i) {
     const tools::Stopwatch watch;
     if (Result<void> done = submit(); !done) return forward_error(done);
     if (Result<void> done = renderer->finish(frame); !done) return forward_error(done);
-    if (i > 0) two_s.push_back(watch.seconds());
+    if (i == 0) continue;
+    two_s.push_back(watch.seconds());
+    two_stages.add(frame.report);
   }
   if (Result<void> done = renderer->finish(frame); !done) return forward_error(done);
   const render::FrameReport& r = frame.report;
@@ -113,7 +192,18 @@ Result<Times> measure(const Scene& scene, Method method, const render::RendererO
                  p.secondaries_s * 1e3, p.queries_cpu_s * 1e3, p.draw_device_s * 1e3, p.query_device_s * 1e3,
                  r.drawn, r.secondaries, r.queries, r.believed_hidden);
   }
-  return Times{median(one_s), median(two_s), r.predicted[static_cast<std::size_t>(method)]};
+  Times out{median(one_s), median(two_s), r.predicted[static_cast<std::size_t>(method)], {}};
+  if (request.dump.empty()) return out;
+  out.dump["one"] = one_stages.medians();
+  out.dump["two"] = two_stages.medians();
+  out.dump["oneMs"] = out.one_s * 1e3;
+  out.dump["twoMs"] = out.two_s * 1e3;
+  out.dump["counts"] = {{"draws", r.draws},     {"secondaries", r.secondaries},
+                        {"queries", r.queries}, {"hidden", r.believed_hidden},
+                        {"drawn", r.drawn},     {"triangles", r.triangles}};
+  out.dump["facts"] = json_of(r.facts);
+  out.dump["predicted"] = json_of(out.predicted);
+  return out;
 }
 
 Result<void> one_set(const Request& request, const render::Calibration& calibration) {
@@ -143,6 +233,11 @@ Result<void> one_set(const Request& request, const render::Calibration& calibrat
                 t->one_s * 1e3, one_s * 1e3, t->two_s * 1e3, t->predicted.frame_s * 1e3,
                 (c.empty_cpu_s + c.empty_device_s + c.latency_s) * 1e3);
     std::fflush(stdout);
+    if (request.dump.empty()) continue;
+    nlohmann::ordered_json line{
+        {"set", request.one}, {"objects", scene.objects.size()}, {"way", o.strategy}};
+    line.update(t->dump);
+    std::ofstream(request.dump, std::ios::app) << line.dump() << '\n';
   }
   return {};
 }
@@ -209,6 +304,7 @@ int run_all(const Request& request, const std::string& self) {
                           " --seconds " + std::to_string(request.seconds);
     if (!request.device.empty()) command += " --device '" + request.device + "'";
     if (request.explain) command += " --explain";
+    if (!request.dump.empty()) command += " --dump '" + request.dump + "'";
     std::FILE* pipe = popen(command.c_str(), "r");
     if (pipe == nullptr) return 3;
     std::array<char, 256> line{};
@@ -262,6 +358,8 @@ int main(int argc, char** argv) {
       request.device = value, ++i;
     else if (a == "--csv")
       request.csv = value, ++i;
+    else if (a == "--dump")
+      request.dump = value, ++i;
     else if (a == "--one")
       request.one = std::atoi(value), ++i;
     else
