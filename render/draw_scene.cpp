@@ -65,8 +65,8 @@ void DrawScene::build_primitives(const Scene& scene, std::span<const std::uint32
       states.push_back(state);
       const auto vertices =
           static_cast<std::uint32_t>(scene.geometries[p.geometry.value].drawn_vertex_count());
-      primitives_.push_back(
-          {p.geometry, MaterialId(material_index), MeshId(m), 0, vertices, bounds[p.geometry.value]});
+      primitives_.push_back({p.geometry, MaterialId(material_index), MeshId(m), 0,
+                             DrawWork{vertices, vertices / 3, 1.0F}, bounds[p.geometry.value]});
     }
   }
 
@@ -86,6 +86,10 @@ void DrawScene::build_primitives(const Scene& scene, std::span<const std::uint32
     primitives_of_mesh_[sorted.back().mesh.value].push_back(static_cast<std::uint32_t>(sorted.size() - 1));
   }
   primitives_ = std::move(sorted);
+}
+
+void DrawScene::set_work(std::span<const DrawWork> of_geometry) {
+  for (DrawPrimitive& primitive : primitives_) primitive.work = of_geometry[primitive.geometry.value];
 }
 
 void DrawScene::build_slots(const Scene& scene) {

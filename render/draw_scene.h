@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "render/draw_geometry.h"
+#include "render/draw_optimize.h"
 #include "render/shaders/shared_types.h"
 #include "render/spatial/slot_boxes.h"
 #include "scene/scene.h"
@@ -40,8 +41,8 @@ struct DrawPrimitive {
   MaterialId material;
   MeshId mesh;
   std::uint32_t batch = 0;
-  std::uint32_t vertices = 0;  ///< drawn
-  Box bounds_m;                ///< in the mesh's coordinates
+  DrawWork work;
+  Box bounds_m;  ///< in the mesh's coordinates
 };
 
 /// Slots [first, end) share a state.
@@ -75,6 +76,9 @@ class DrawScene {
   /// state of `player`, whatever its time.
   DrawScene(const Scene& scene, const timeline::Player& player,
             std::span<const std::uint32_t> texture_set_of_material);
+
+  /// What drawing each geometry takes, once that is known; until then by what the scene says of it.
+  void set_work(std::span<const DrawWork> of_geometry);
 
   /// Brings visible set, boxes and records up to the player's state. O(changes), and O(objects that ever
   /// move) when one of them did.

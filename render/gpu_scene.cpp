@@ -1,4 +1,5 @@
 #include "render/gpu_scene.h"
+#include "render/draw_optimize.h"
 
 #include <algorithm>
 #include <array>
@@ -121,8 +122,17 @@ void GpuScene::upload_geometry(const Scene& scene) {
   std::vector<glm::vec3> positions;
   std::vector<VertexAttributes> attributes;
   std::vector<std::uint32_t> indices;
+  std::vector<TriangleOrder> orders(scene.geometries.size(), TriangleOrder::free);
+  for (const Mesh& mesh : scene.meshes) {
+    for (const Primitive& p : mesh.primitives) {
+      if (p.material.valid() && scene.materials[p.material.value].alpha_mode == AlphaMode::blend)
+        orders[p.geometry.value] = TriangleOrder::kept;
+    }
+  }
   for (const Geometry& geometry : scene.geometries) {
-    const DrawGeometry drawn = make_draw_geometry(geometry);
+    DrawGeometry drawn = make_draw_geometry(geometry);
+    share_vertices(drawn, orders[ranges_.size()]);
+    work_.push_back(work_of(drawn));
     GeometryRange range;
     range.first_index = static_cast<std::uint32_t>(indices.size());
     range.index_count = static_cast<std::uint32_t>(drawn.indices.size());

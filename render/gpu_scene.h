@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -57,6 +58,8 @@ class GpuScene {
   /// Bit i: the set has texture i.
   [[nodiscard]] std::uint32_t texture_mask(std::uint32_t set) const { return texture_masks_[set]; }
   [[nodiscard]] const GeometryRange& range(GeometryId id) const { return ranges_[id.value]; }
+  /// Of each geometry, as it is drawn.
+  [[nodiscard]] std::span<const DrawWork> work() const { return work_; }
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
@@ -76,6 +79,7 @@ class GpuScene {
   vkr::Memory& memory_;
   std::vector<std::string> warnings_;
   std::vector<GeometryRange> ranges_;
+  std::vector<DrawWork> work_;
   vkr::Buffer positions_, attributes_, indices_, records_, materials_, camera_;
   vkr::Buffer upload_;
   std::vector<MaterialRecord> material_records_;

@@ -158,6 +158,7 @@ void Renderer::State::build(const Scene& source, const timeline::Player& player)
                        vk::SampleCountFlagBits::e1);
   scene.emplace(source, player, sets.of_material);
   gpu.emplace(*device, *memory, *pipelines, source, sets);
+  scene->set_work(gpu->work());
   gpu->upload_records(scene->all_records(player));
   for (std::uint32_t i = 0; i < source.materials.size(); ++i) {
     const MaterialId id(i);

@@ -15,7 +15,7 @@ class Sample {
   void add(std::uint32_t slot) {
     const DrawPrimitive& primitive = scene_.primitive(slot);
     ++taken_;
-    vertices_ += primitive.vertices;
+    vertices_ += primitive.work.vertices;
     fragments_ += screen_.fragments(scene_.boxes().get(slot));
     textured_ += scene_.batches()[primitive.batch].state.texture_set != 0 ? 1.0 : 0.0;
   }

@@ -16,9 +16,9 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "gen/generate.h"
@@ -234,8 +234,7 @@ Result<void> one_set(const Request& request, const render::Calibration& calibrat
                 (c.empty_cpu_s + c.empty_device_s + c.latency_s) * 1e3);
     std::fflush(stdout);
     if (request.dump.empty()) continue;
-    nlohmann::ordered_json line{
-        {"set", request.one}, {"objects", scene.objects.size()}, {"way", o.strategy}};
+    nlohmann::ordered_json line{{"set", request.one}, {"objects", scene.objects.size()}, {"way", o.strategy}};
     line.update(t->dump);
     std::ofstream(request.dump, std::ios::app) << line.dump() << '\n';
   }

@@ -42,7 +42,7 @@ Sum sum_of(const DrawScene& scene, const std::vector<std::uint32_t>& slots, cons
   Sum sum;
   for (const std::uint32_t slot : slots) {
     sum.draws += 1;
-    sum.vertices += scene.primitive(slot).vertices;
+    sum.vertices += scene.primitive(slot).work.vertices;
     sum.fragments += screen.fragments(scene.boxes().get(slot));
   }
   return sum;
