@@ -10,6 +10,7 @@ int calibrate_verb(std::span<const std::string> arguments);
 int frames_verb(std::span<const std::string> arguments);
 int camera_path_verb(std::span<const std::string> arguments);
 int bench_verb(std::span<const std::string> arguments);
+int experiment_verb(std::span<const std::string> arguments);
 /// Prints the Vulkan devices there are.
 int list_devices_verb();
 

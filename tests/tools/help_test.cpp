@@ -60,7 +60,7 @@ TEST_CASE("help fits a terminal and is in docs/CLI.md as it stands") {
 #ifdef SCENEPLAY_PROGRAM
 TEST_CASE("every option of sceneplay is in docs/CLI.md") {
   const std::string reference = read_file(SCENEGEN_SOURCE_DIR "/docs/CLI.md");
-  for (const char* verb : {"frames", "bench", "calibrate", "camera-path"}) {
+  for (const char* verb : {"frames", "bench", "experiment", "calibrate", "camera-path"}) {
     const ProcessResult result = run(SCENEPLAY_PROGRAM, {verb, "--help"});
     REQUIRE(result.code == 0);
     std::size_t options = 0;

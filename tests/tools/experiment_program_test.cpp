@@ -1,0 +1,101 @@
+// sceneplay experiment: files, tables, and what it refuses.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/process.h"
+#include "tools/experiments/all.h"
+#include "tools/report/document.h"
+
+using namespace scenegen;
+using namespace scenegen::test;
+using namespace scenegen::tools;
+
+namespace {
+
+ProcessResult play(const std::string& line) {
+  return run(SCENEPLAY_PROGRAM, words(line));
+}
+
+Document document_in(const std::string& folder) {
+  const auto json = nlohmann::ordered_json::parse(read_file(folder + "/experiment.json"));
+  CHECK(json["schema"] == "sceneplay/experiment");
+  CHECK(json["version"] == 1);
+  CHECK(json["machine"]["cores"] >= 1);
+  auto document = document_from_json(json["document"], "/document");
+  REQUIRE(document);
+  return std::move(*document);
+}
+
+/// What does not depend on the machine: everything but times and their spread.
+std::string counts_of(const Document& document) {
+  std::string out;
+  for (const DocumentSection& section : document.sections) {
+    for (const Block& block : section.blocks) {
+      const auto* table = std::get_if<DocumentTable>(&block);
+      if (table == nullptr) continue;
+      for (const std::vector<Cell>& row : table->rows) {
+        for (std::size_t i = 0; i < row.size(); ++i) {
+          if (table->columns[i].unit == "ms" || table->columns[i].title == "spread") continue;
+          if (const auto* number = std::get_if<double>(&row[i])) out += std::to_string(*number) + " ";
+        }
+        out += "\n";
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("experiment: the list") {
+  const auto by_option = play("experiment --list");
+  const auto by_itself = play("experiment");
+  CHECK(by_option.code == 0);
+  CHECK(by_option.out == by_itself.out);
+  for (const Experiment& e : experiments())
+    CHECK_THAT(by_option.out, Catch::Matchers::Contains(std::string(e.name)) &&
+                                  Catch::Matchers::Contains(std::string(e.source)));
+}
+
+TEST_CASE("experiment: octree-or-bvh needs no device and gives the same counts again") {
+  const TemporaryFolder folder;
+  const auto result =
+      play("experiment octree-or-bvh --quick --repeat 1 --device nonesuch -o " + folder.file("a/b"));
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  CHECK_THAT(result.out, Catch::Matchers::Contains("LBVH, Morton") && Catch::Matchers::Contains("D 5.2"));
+  const Document first = document_in(folder.file("a/b"));
+  REQUIRE(first.sections.size() == 1);
+  CHECK(first.sections[0].id == "octree-or-bvh");
+  CHECK(first.sections[0].blocks.size() >= 4);
+  CHECK_THAT(read_file(folder.file("a/b/index-visible.csv")),
+             Catch::Matchers::StartsWith("scene,objects,index,"));
+  CHECK(std::filesystem::exists(folder.file("a/b/references-by-height.csv")));
+  REQUIRE(play("experiment octree-or-bvh --quick --repeat 1 --quiet -o " + folder.file("c")).code == 0);
+  CHECK(counts_of(document_in(folder.file("c"))) == counts_of(first));
+  REQUIRE(play("experiment octree-or-bvh --quick --repeat 1 --quiet --seed 2 -o " + folder.file("d")).code ==
+          0);
+  CHECK(counts_of(document_in(folder.file("d"))) != counts_of(first));
+}
+
+TEST_CASE("experiment: wrong calls") {
+  const TemporaryFolder folder;
+  test::write_file(folder.file("file"), "no folder");
+  const auto check_error = [&](const std::string& line, int code, const std::string& part) {
+    const auto result = play(line);
+    INFO(line << ": " << result.err);
+    CHECK(result.code == code);
+    CHECK(result.out.empty());
+    CHECK(result.err.starts_with("error: "));
+    CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+    CHECK_THAT(result.err, Catch::Matchers::Contains(part));
+  };
+  check_error("experiment octree-or-bhv -o x", 2, "did you mean 'octree-or-bvh'");
+  check_error("experiment octree-or-bvh", 2, "--output");
+  check_error("experiment --quick -o x", 2, "NAME");
+  check_error("experiment octree-or-bvh -o x --repeat 0", 2, "--repeat");
+  check_error("experiment octree-or-bvh --quick -o " + folder.file("file"), 3, "file");
+  check_error("experiment octree-or-bvh --quick -o /proc/nowhere", 3, "/proc/nowhere");
+}

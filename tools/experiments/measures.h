@@ -1,0 +1,78 @@
+// What experiments share: medians with spread, cells of tables, runs of several ways of drawing in turn,
+// pictures.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+#include "tools/bench_case.h"
+#include "tools/experiments/experiment.h"
+
+namespace scenegen::tools {
+
+/// Of repetitions.
+struct Spread {
+  double median = 0, low = 0, high = 0;
+  /// Half of the range in percent of the median.
+  [[nodiscard]] double percent() const { return median > 0 ? 50.0 * (high - low) / median : 0; }
+};
+/// Median, least and greatest. Not of nothing.
+[[nodiscard]] Spread spread_of(std::vector<double> values);
+[[nodiscard]] double mean_of(const std::vector<double>& values);
+
+/// Milliseconds of the processor's time that `work` takes on this thread: not disturbed by others.
+[[nodiscard]] double cpu_milliseconds(const std::function<void()>& work);
+
+[[nodiscard]] ChartPoint point(double x, const Spread& y);
+/// "1.6", for sentences: two significant digits and no exponent.
+[[nodiscard]] std::string in_words(double ratio);
+
+/// How often each case is measured.
+[[nodiscard]] std::uint32_t repetitions(const ExperimentContext& context, std::uint32_t full,
+                                        std::uint32_t quick);
+/// What all drawing in experiments has in common: the context's device, size, samples and costs; no shadows,
+/// no picture read back.
+[[nodiscard]] render::RendererOptions drawing(const ExperimentContext& context);
+
+/// A way of drawing to be compared.
+struct Way {
+  std::string label;
+  std::string strategy;
+  bool late = false;
+};
+
+struct WayRuns {
+  Way way;
+  std::vector<BenchRun> runs;  ///< one a repetition
+
+  /// Of the mean frame times of the repetitions, ms.
+  [[nodiscard]] Spread frame_ms() const;
+  /// Of the means of a stage of BenchRun::stages; low and high too.
+  [[nodiscard]] Spread stage_ms(std::string_view stage) const;
+  /// Of frame `frame`.
+  [[nodiscard]] Spread frame_ms(std::size_t frame) const;
+};
+
+struct Turns {
+  std::vector<double> moments;
+  std::uint32_t warm_up = 6;
+  std::uint32_t repeat = 3;
+  std::uint32_t frames_in_flight = 2;
+};
+/// Every way over all moments, `repeat` times, another one first each time; seen from the scene's first
+/// camera.
+[[nodiscard]] Result<std::vector<WayRuns>> compare_ways(const ExperimentContext& context, const Scene& scene,
+                                                        const std::vector<Way>& ways, const Turns& turns);
+/// Evenly from `from` to `to`, both included.
+[[nodiscard]] std::vector<double> moments_between(double from_s, double to_s, std::uint32_t count);
+
+/// Draws the scene at a time as a PNG into the context's folder.
+[[nodiscard]] Result<Picture> take_picture(const ExperimentContext& context, const Scene& scene,
+                                           double time_s, const std::string& id, const std::string& title);
+
+/// A step of an experiment's progress line begins.
+void begin_step(const ExperimentContext& context, const std::string& what);
+
+}  // namespace scenegen::tools
