@@ -5,6 +5,7 @@
 
 namespace scenegen::tools {
 
+[[nodiscard]] Result<DocumentSection> adaptive_animation(const ExperimentContext& context);
 [[nodiscard]] Result<DocumentSection> octree_or_bvh(const ExperimentContext& context);
 
 }  // namespace scenegen::tools

@@ -16,7 +16,16 @@ namespace scenegen::tools {
 Spread spread_of(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();
-  return {0.5 * (values[(n - 1) / 2] + values[n / 2]), values.front(), values.back()};
+  return {0.5 * (values[(n - 1) / 2] + values[n / 2]), values.front(), values.back(), n};
+}
+
+Cell spread_cell(std::initializer_list<Spread> spreads) {
+  double most = 0;
+  for (const Spread& s : spreads) {
+    if (s.count < 2) return {};
+    most = std::max(most, s.percent());
+  }
+  return most;
 }
 
 double mean_of(const std::vector<double>& values) {
@@ -34,6 +43,11 @@ double cpu_milliseconds(const std::function<void()>& work) {
   const double start_ms = now_ms();
   work();
   return now_ms() - start_ms;
+}
+
+Cell known(double value) {
+  if (value < 0) return {};
+  return value;
 }
 
 ChartPoint point(double x, const Spread& y) {
@@ -73,10 +87,10 @@ Spread WayRuns::stage_ms(std::string_view stage) const {
   std::vector<double> means;
   for (const BenchRun& run : runs) {
     const auto found = std::find(run.stages.begin(), run.stages.end(), stage);
-    if (found == run.stages.end()) return {-1, -1, -1};
+    if (found == run.stages.end()) return {-1, -1, -1, 0};
     const std::vector<double>& values = run.stages_ms[static_cast<std::size_t>(found - run.stages.begin())];
     // One frame without a figure (a device without timestamps) and the mean says nothing.
-    if (std::any_of(values.begin(), values.end(), [](double v) { return v < 0; })) return {-1, -1, -1};
+    if (std::any_of(values.begin(), values.end(), [](double v) { return v < 0; })) return {-1, -1, -1, 0};
     means.push_back(mean_of(values));
   }
   return spread_of(std::move(means));

@@ -15,16 +15,21 @@ namespace scenegen::tools {
 /// Of repetitions.
 struct Spread {
   double median = 0, low = 0, high = 0;
+  std::size_t count = 0;
   /// Half of the range in percent of the median.
   [[nodiscard]] double percent() const { return median > 0 ? 50.0 * (high - low) / median : 0; }
 };
 /// Median, least and greatest. Not of nothing.
 [[nodiscard]] Spread spread_of(std::vector<double> values);
+/// The largest of some percent(); empty when one was measured only once: it has no spread.
+[[nodiscard]] Cell spread_cell(std::initializer_list<Spread> spreads);
 [[nodiscard]] double mean_of(const std::vector<double>& values);
 
 /// Milliseconds of the processor's time that `work` takes on this thread: not disturbed by others.
 [[nodiscard]] double cpu_milliseconds(const std::function<void()>& work);
 
+/// Empty for what is negative: not measured.
+[[nodiscard]] Cell known(double value);
 [[nodiscard]] ChartPoint point(double x, const Spread& y);
 /// "1.6", for sentences: two significant digits and no exponent.
 [[nodiscard]] std::string in_words(double ratio);

@@ -187,7 +187,7 @@ void add_visible(const ExperimentContext& context, const NamedScene& named, Docu
     const Spread ms = spread_of(build_ms[i]);
     table.rows.push_back({named.name, static_cast<double>(all.size()), structures[i].name,
                           static_cast<double>(trees[i].nodes.size()), walks.in_frustum, walks.visible,
-                          walked.shown, walked.missed, walked.queries, ms.median, ms.percent()});
+                          walked.shown, walked.missed, walked.queries, ms.median, spread_cell({ms})});
   }
   sums.octree_shown += walks.of_tree[0].shown;
   sums.best_bvh_shown += std::min(walks.of_tree[2].shown, walks.of_tree[3].shown);
@@ -386,7 +386,7 @@ Result<DocumentTable> updates_table(const ExperimentContext& context, UpdateSums
       const Spread ms = spread_of(way.ms);
       (i == 0 ? sums.octree_ms : i == 1 ? sums.sah_ms : i == 2 ? sums.lbvh_ms : sums.refit_ms) += ms.median;
       table.rows.push_back({coherence, way.name, way.how, updates.changes() / (steps - 1), ms.median,
-                            ms.percent(), mean_of(way.kept), mean_of(way.shown)});
+                            spread_cell({ms}), mean_of(way.kept), mean_of(way.shown)});
     }
   }
   table.note = std::string(context.quick ? "A small town" : "Test set 32") +

@@ -15,8 +15,8 @@ std::string experiment_list() {
     source.resize(std::max<std::size_t>(source.size(), 7), ' ');
     bool first = true;
     for (const std::string& line : wrap(e.summary, 70)) {
-      out += first ? name + "  " + source : std::string(29, ' ');
-      out += line + "\n";
+      out.append(first ? name : std::string(name.size(), ' ')).append("  ");
+      out.append(first ? source : std::string(source.size(), ' ')).append(line).append("\n");
       first = false;
     }
   }

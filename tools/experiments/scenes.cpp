@@ -23,9 +23,9 @@ struct Recipe {
   std::uint32_t planes = 0;
   bool windows = true, partitions = true;
 };
-constexpr std::array<Recipe, 4> kRecipes{{{2, 2.0, 0.6, 0.05, 0, true, true},
+constexpr std::array<Recipe, 4> kRecipes{{{2, 2.0, 0.6, 0.1, 0, true, true},
                                           {4, 1.3, 0.55, 0.2, 6, true, true},
-                                          {5, 1.6, 0.35, 0.85, 0, true, false},
+                                          {5, 1.6, 0.4, 0.9, 2, true, false},
                                           {14, 1.2, 0.6, 0.0, 0, true, true}}};
 
 std::uint64_t sphere_vertices(std::uint32_t slices) {
@@ -88,7 +88,7 @@ void add_planes(gen::Generated& out, const Box& building, std::uint32_t count) {
     Transform t;
     t.scale = {1.2F * size.x, 0.2F, 0.9F * size.z};
     t.translation_m = building.centre() + glm::vec3((i % 2 == 0 ? -1.35F : 1.35F) * size.x, 0,
-                                                    (static_cast<float>(i / 2) - 1.0F) * size.z);
+                                                    (static_cast<float>(i - i % 2) / 2.0F - 1.0F) * size.z);
     t.translation_m.y = building.lo.y + 0.2F;
     scene.objects.add("plan_" + std::to_string(i), MeshId(scene.meshes.size() - 1), t);
   }
@@ -101,31 +101,54 @@ struct Equipment {
   std::uint64_t finer_count = 0;  ///< of the first ones
 };
 
+/// Place `i` of open racks beside the building, row behind row: most of what is in them can be seen.
+glm::vec3 place_in_racks(const Box& building, std::uint64_t i) {
+  constexpr float kPitch = 1.0F;
+  constexpr std::uint64_t kDeep = 3;
+  const glm::vec3 size = building.size();
+  const auto high = std::max<std::uint64_t>(2, static_cast<std::uint64_t>(0.5F * size.y / kPitch));
+  const auto along = std::max<std::uint64_t>(4, static_cast<std::uint64_t>(1.5F * size.z / kPitch));
+  const std::uint64_t in_rack = i % (kDeep * high * along);
+  const std::uint64_t rack = i / (kDeep * high * along);
+  const std::uint64_t level = in_rack / kDeep % high;
+  const std::uint64_t column = in_rack / kDeep / high;
+  const float beside = 4.0F + kPitch * static_cast<float>(in_rack % kDeep) + 7.0F * static_cast<float>(rack);
+  return {building.hi.x + beside, building.lo.y + 0.5F + kPitch * static_cast<float>(level),
+          building.lo.z + kPitch * static_cast<float>(column)};
+}
+
 void add_equipment(gen::Generated& out, const Box& building, const Equipment& what, std::uint64_t seed) {
   Scene& scene = out.scene;
   const Random random(seed, "equipment");
   const glm::vec3 size = building.size();
-  const auto columns = static_cast<std::uint64_t>(std::ceil(std::sqrt(static_cast<double>(what.outdoors))));
   for (std::uint64_t i = 0; i < what.count; ++i) {
     Transform t;
     const std::uint64_t at = 8 * i;
     t.scale = glm::vec3(0.25F + 0.35F * random.unit(at));
     if (i < what.outdoors) {
-      // A square field beside the building; what would stand in it is moved behind.
-      const float pitch = 1.4F;
-      t.translation_m = {building.hi.x + 3.0F + pitch * static_cast<float>(i % columns), building.lo.y,
-                         building.centre().z +
-                             pitch * (static_cast<float>(i / columns) - 0.5F * static_cast<float>(columns))};
-      t.translation_m.y += 0.5F * t.scale.y;
+      t.scale *= 1.4F;
+      t.translation_m = place_in_racks(building, i);
     } else {
-      for (int k = 0; k < 3; ++k)
-        t.translation_m[k] =
-            building.lo[k] + size[k] * (0.04F + 0.92F * random.unit(at + 1 + static_cast<std::uint64_t>(k)));
+      for (int k = 0; k < 3; ++k) {
+        const float share = random.unit(at + 1 + static_cast<std::uint64_t>(k));
+        t.translation_m[k] = building.lo[k] + 1.0F + (size[k] - 2.0F) * share;
+      }
     }
     const auto& meshes = i < what.finer_count ? what.finer : what.plain;
     scene.objects.add("part_" + std::to_string(i), meshes[random.below(at + 5, 3)], t);
   }
   out.exempt.resize(scene.objects.size(), 0);
+}
+
+/// Round the walls, without what lies flat on the ground about them.
+Box walls_of(const gen::Generated& generated) {
+  Box out;
+  const std::vector<Box> boxes = object_bounds(generated.scene);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (generated.exempt[i] == 0 && boxes[i].lo.y > 0.5F && boxes[i].size().x < 3) out.add(boxes[i]);
+  }
+  out.lo.y = 0;
+  return out;
 }
 
 Box bounds_of(const Scene& scene, const std::vector<std::uint8_t>* exempt = nullptr) {
@@ -171,7 +194,7 @@ Result<gen::Generated> stand_in(int set, double share, std::uint64_t seed) {
   auto made = gen::generate_town(*options);
   if (!made) return forward_error(made);
   Scene& scene = made->scene;
-  const Box building = bounds_of(scene, &made->exempt);
+  const Box building = walls_of(*made);
   add_planes(*made, building, recipe.planes);
   const std::uint64_t so_far = scene.objects.size();
   if (so_far < objects) {
