@@ -259,6 +259,7 @@ void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline:
   report.objects = scene->object_count();
   report.visible = scene->visible_object_count();
   static_cast<PlanCounters&>(report) = strategy->counters();
+  report.uploaded_bytes += report.list_bytes;
   report.strategy_used = find_strategy(options.strategy)->name;
   if (const ChoiceReport* choice = strategy->choice()) {
     report.strategy_used = choice->used;

@@ -13,13 +13,14 @@ DrawRecorder::DrawRecorder(const vk::raii::CommandBuffer& commands, vkr::Pipelin
   commands_.setFrontFace(front_);
 }
 
-void DrawRecorder::bind_batch(std::uint32_t batch) {
+void DrawRecorder::bind_batch(std::uint32_t batch, bool listed) {
   batch_ = batch;
+  listed_ = listed;
   const DrawState& state = scene_.batches()[batch].state;
   // Depth passes read one texture at most, for the alpha of masked materials.
   std::uint32_t mask = gpu_.texture_mask(state.texture_set);
   if (pass_ != vkr::PassKind::color) mask &= state.alpha == AlphaMode::mask ? 1U << kTextureBaseColor : 0U;
-  const vk::Pipeline pipeline = pipelines_.get({pass_, state.alpha, state.kind, mask});
+  const vk::Pipeline pipeline = pipelines_.get({pass_, state.alpha, state.kind, mask, listed});
   if (pipeline != pipeline_) commands_.bindPipeline(vk::PipelineBindPoint::eGraphics, pipeline);
   pipeline_ = pipeline;
   const std::uint32_t set = mask != 0 ? state.texture_set : 0;
@@ -40,7 +41,7 @@ void DrawRecorder::set_winding(std::uint32_t slot, const DrawState& state) {
 
 void DrawRecorder::draw_run(std::uint32_t first, std::uint32_t count) {
   const DrawPrimitive& primitive = scene_.primitive(first);
-  if (primitive.batch != batch_) bind_batch(primitive.batch);
+  if (primitive.batch != batch_ || listed_) bind_batch(primitive.batch);
   set_winding(first, scene_.batches()[primitive.batch].state);
   const GeometryRange& range = gpu_.range(primitive.geometry);
   if (range.index_count == 0) return;
@@ -52,7 +53,7 @@ void DrawRecorder::draw_run(std::uint32_t first, std::uint32_t count) {
 void DrawRecorder::draw_indirect(const IndirectDraws& draws) {
   constexpr auto kStride = static_cast<std::uint32_t>(sizeof(VkDrawIndexedIndirectCommand));
   const DrawPrimitive& primitive = scene_.primitive(draws.slot);
-  if (primitive.batch != batch_) bind_batch(primitive.batch);
+  if (primitive.batch != batch_ || listed_) bind_batch(primitive.batch);
   set_winding(draws.slot, scene_.batches()[primitive.batch].state);
   if (draws.counts) {
     commands_.drawIndexedIndirectCount(draws.commands, draws.offset, draws.counts, draws.counts_offset,
@@ -62,6 +63,21 @@ void DrawRecorder::draw_indirect(const IndirectDraws& draws) {
   }
   draws_ += draws.count;
   triangles_ += draws.triangles;
+}
+
+void DrawRecorder::read_slots_from(vk::Buffer list) {
+  commands_.bindVertexBuffers(2, list, {0});
+}
+
+void DrawRecorder::draw_listed(std::uint32_t slot, std::uint32_t first, std::uint32_t count) {
+  const DrawPrimitive& primitive = scene_.primitive(slot);
+  if (primitive.batch != batch_ || !listed_) bind_batch(primitive.batch, true);
+  set_winding(slot, scene_.batches()[primitive.batch].state);
+  const GeometryRange& range = gpu_.range(primitive.geometry);
+  if (range.index_count == 0) return;
+  commands_.drawIndexed(range.index_count, count, range.first_index, range.vertex_offset, first);
+  ++draws_;
+  if (range.kind == PrimitiveKind::triangles) triangles_ += std::uint64_t{range.index_count / 3} * count;
 }
 
 void record_all_solid(DrawRecorder& recorder, const DrawScene& scene) {

@@ -32,11 +32,17 @@ class DrawRecorder {
 
   void draw_indirect(const IndirectDraws& draws);
 
+  /// Where draw_listed() finds slots: 32-bit numbers.
+  void read_slots_from(vk::Buffer list);
+  /// Slots [first, first + count) of that list at once; `slot`, one of them, stands for them: all share
+  /// state, geometry and whether they are mirrored.
+  void draw_listed(std::uint32_t slot, std::uint32_t first, std::uint32_t count);
+
   [[nodiscard]] std::uint64_t draws() const { return draws_; }
   [[nodiscard]] std::uint64_t triangles() const { return triangles_; }
 
  private:
-  void bind_batch(std::uint32_t batch);
+  void bind_batch(std::uint32_t batch, bool listed = false);
   void set_winding(std::uint32_t slot, const DrawState& state);
 
   const vk::raii::CommandBuffer& commands_;
@@ -46,6 +52,7 @@ class DrawRecorder {
   vkr::PassKind pass_;
   vk::Pipeline pipeline_;
   std::uint32_t batch_ = 0xFFFFFFFFU;
+  bool listed_ = false;  // the pipeline takes slots from a list
   std::uint32_t texture_set_ = 0xFFFFFFFFU;
   vk::CullModeFlags cull_;
   vk::FrontFace front_ = vk::FrontFace::eCounterClockwise;

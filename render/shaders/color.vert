@@ -13,7 +13,7 @@ layout(location = 6) out vec4 out_uv23;
 layout(location = 7) out vec2 out_uv4;
 
 void main() {
-  ObjectRecord record = objects[gl_InstanceIndex];
+  ObjectRecord record = objects[in_slot];
   vec3 world = world_position(record);
   gl_Position = clip_position(world);
   gl_PointSize = 1.0;

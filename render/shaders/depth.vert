@@ -10,7 +10,7 @@ layout(location = 1) out vec4 out_color;
 layout(location = 2) flat out uvec2 out_material_object;
 
 void main() {
-  ObjectRecord record = objects[gl_InstanceIndex];
+  ObjectRecord record = objects[in_slot];
   vec3 world = world_position(record);
   if (kShadow) {
     gl_Position = camera.shadow_from_world * vec4(world, 1.0);

@@ -7,6 +7,11 @@ layout(location = 2) in vec4 in_tangent;
 layout(location = 3) in vec2 in_texcoord0;
 layout(location = 4) in vec2 in_texcoord1;
 layout(location = 5) in vec4 in_color;
+#ifdef SLOT_LIST  // instanced draws: a list says which slot an instance is
+layout(location = 6) in uint in_slot;
+#else
+#define in_slot gl_InstanceIndex
+#endif
 
 invariant gl_Position;
 

@@ -9,6 +9,7 @@ namespace scenegen::render {
 std::unique_ptr<Strategy> make_brute(const StrategyContext& context);
 std::unique_ptr<Strategy> make_inline(const StrategyContext& context);
 std::unique_ptr<Strategy> make_inline_queries(const StrategyContext& context);
+std::unique_ptr<Strategy> make_instanced(const StrategyContext& context);
 std::unique_ptr<Strategy> make_octree_record(const StrategyContext& context);
 std::unique_ptr<Strategy> make_octree(const StrategyContext& context);
 std::unique_ptr<Strategy> make_queries(const StrategyContext& context);
@@ -22,6 +23,7 @@ std::span<const StrategyEntry> strategies() {
       StrategyEntry{"inline-queries",
                     "the same, with an occlusion query for every object; may draw it some frames too late",
                     &make_inline_queries},
+      StrategyEntry{"instanced", "the same, with one instanced draw for all that are equal", &make_instanced},
       StrategyEntry{"octree-record", "octree culling, commands recorded each frame", &make_octree_record},
       StrategyEntry{"octree", "octree culling, commands of each node kept", &make_octree},
       StrategyEntry{"queries-all", "the same, with an occlusion query for every node", &make_queries_all},

@@ -7,7 +7,9 @@
 
 #include "render/shaders/box_vert.h"
 #include "render/shaders/color_frag.h"
+#include "render/shaders/color_listed_vert.h"
 #include "render/shaders/color_vert.h"
+#include "render/shaders/depth_listed_vert.h"
 #include "render/shaders/depth_vert.h"
 #include "render/shaders/ids_frag.h"
 #include "render/shaders/shadow_frag.h"
@@ -76,6 +78,14 @@ constexpr std::array kAttributes{vk::VertexInputAttributeDescription(0, 0, vk::F
                                  vk::VertexInputAttributeDescription(5, 1, vk::Format::eR16G16B16A16Unorm,
                                                                      offsetof(VertexAttributes, color))};
 
+/// Of a list: the slot of an instance.
+constexpr vk::VertexInputBindingDescription kListBinding(2, sizeof(std::uint32_t),
+                                                         vk::VertexInputRate::eInstance);
+constexpr vk::VertexInputAttributeDescription kListAttribute(6, 2, vk::Format::eR32Uint, 0);
+constexpr std::array kListedBindings{kBindings[0], kBindings[1], kListBinding};
+constexpr std::array kListedAttributes{kAttributes[0], kAttributes[1], kAttributes[2], kAttributes[3],
+                                       kAttributes[4], kAttributes[5], kListAttribute};
+
 /// What differs between pipelines.
 struct Recipe {
   std::span<const vk::PipelineShaderStageCreateInfo> stages;
@@ -83,6 +93,7 @@ struct Recipe {
   vk::PrimitiveTopology topology = vk::PrimitiveTopology::eTriangleList;
   Samples samples = Samples::e1;
   bool vertices = true;
+  bool listed = false;
   bool color = true;
   bool write_color = true;
   bool blend = false;
@@ -93,6 +104,8 @@ struct Recipe {
 vk::raii::Pipeline build(const Device& device, vk::PipelineLayout layout, const Recipe& recipe) {
   vk::PipelineVertexInputStateCreateInfo vertex_input;
   if (recipe.vertices) vertex_input = vk::PipelineVertexInputStateCreateInfo({}, kBindings, kAttributes);
+  if (recipe.listed)
+    vertex_input = vk::PipelineVertexInputStateCreateInfo({}, kListedBindings, kListedAttributes);
   const vk::PipelineInputAssemblyStateCreateInfo assembly({}, recipe.topology);
   vk::PipelineViewportStateCreateInfo viewport;
   viewport.viewportCount = 1;
@@ -171,8 +184,10 @@ Pipelines::Pipelines(const Device& device, vk::SampleCountFlagBits color_samples
   }
   shadow_pass_ = make_pass(device, vk::Format::eUndefined, Samples::e1, true);
   color_vert_ = module(device, kColorVert);
+  color_listed_vert_ = module(device, kColorListedVert);
   color_frag_ = module(device, kColorFrag);
   depth_vert_ = module(device, kDepthVert);
+  depth_listed_vert_ = module(device, kDepthListedVert);
   ids_frag_ = module(device, kIdsFrag);
   shadow_frag_ = module(device, kShadowFrag);
   sky_vert_ = module(device, kSkyVert);
@@ -212,17 +227,20 @@ vk::raii::Pipeline Pipelines::make(const PipelineKey& key) const {
   const vk::SpecializationInfo specialization(static_cast<std::uint32_t>(kEntries.size()), kEntries.data(),
                                               sizeof(constants), &constants);
   const bool color = key.pass == PassKind::color;
+  vk::ShaderModule vertex = color ? *color_vert_ : *depth_vert_;
+  if (key.listed) vertex = color ? *color_listed_vert_ : *depth_listed_vert_;
   vk::ShaderModule fragment = color ? *color_frag_ : *ids_frag_;
   if (key.pass == PassKind::shadow) fragment = *shadow_frag_;
   std::vector<vk::PipelineShaderStageCreateInfo> stages;
-  stages.emplace_back(vk::PipelineShaderStageCreateFlags{}, vk::ShaderStageFlagBits::eVertex,
-                      color ? *color_vert_ : *depth_vert_, "main", &specialization);
+  stages.emplace_back(vk::PipelineShaderStageCreateFlags{}, vk::ShaderStageFlagBits::eVertex, vertex, "main",
+                      &specialization);
   // Shadows of opaque things need no fragment shader at all.
   if (key.pass != PassKind::shadow || key.alpha == AlphaMode::mask)
     stages.emplace_back(vk::PipelineShaderStageCreateFlags{}, vk::ShaderStageFlagBits::eFragment, fragment,
                         "main", &specialization);
   Recipe recipe;
   recipe.stages = stages;
+  recipe.listed = key.listed;
   recipe.pass = render_pass(key.pass);
   recipe.topology = topology(key.kind);
   recipe.samples = color ? color_samples_ : Samples::e1;

@@ -25,6 +25,7 @@ struct PipelineKey {
   AlphaMode alpha = AlphaMode::opaque;
   PrimitiveKind kind = PrimitiveKind::triangles;
   std::uint32_t texture_mask = 0;  ///< bit i: samples texture i (kTexture…)
+  bool listed = false;             ///< slots come from a third vertex buffer, a 32-bit number an instance
   friend auto operator<=>(const PipelineKey&, const PipelineKey&) = default;
 };
 
@@ -59,8 +60,9 @@ class Pipelines {
   vk::raii::PipelineLayout box_layout_{nullptr};
   vk::raii::RenderPass color_passes_[3]{nullptr, nullptr, nullptr}, ids_passes_[3]{nullptr, nullptr, nullptr};
   vk::raii::RenderPass shadow_pass_{nullptr};
-  vk::raii::ShaderModule color_vert_{nullptr}, color_frag_{nullptr}, depth_vert_{nullptr}, ids_frag_{nullptr},
-      shadow_frag_{nullptr}, sky_vert_{nullptr}, sky_frag_{nullptr}, box_vert_{nullptr};
+  vk::raii::ShaderModule color_vert_{nullptr}, color_listed_vert_{nullptr}, color_frag_{nullptr},
+      depth_vert_{nullptr}, depth_listed_vert_{nullptr}, ids_frag_{nullptr}, shadow_frag_{nullptr},
+      sky_vert_{nullptr}, sky_frag_{nullptr}, box_vert_{nullptr};
   std::map<PipelineKey, vk::raii::Pipeline> pipelines_;
   vk::raii::Pipeline sky_{nullptr}, color_box_{nullptr}, ids_box_{nullptr};
 };
