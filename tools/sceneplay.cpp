@@ -33,6 +33,7 @@ constexpr std::string_view kShortHelp =
     "  sceneplay experiment NAME -o DIR  repeats an experiment of the papers\n"
     "  sceneplay calibrate               measures what drawing costs on this machine\n"
     "  sceneplay camera-path FILE PATH   writes a camera path that is made from FILE\n"
+    "  sceneplay report RESULTS -o FILE  makes a page of what was measured\n"
     "  sceneplay --list-devices          the Vulkan devices there are\n"
     "\n"
     "Example: sceneplay frames town.glb -o frames --times 25%,50%,100%\n"
@@ -51,10 +52,12 @@ int run(std::span<const std::string> arguments) {
   if (first == "camera-path") return camera_path_verb(arguments.subspan(1));
   if (first == "bench") return bench_verb(arguments.subspan(1));
   if (first == "experiment") return experiment_verb(arguments.subspan(1));
+  if (first == "report") return report_verb(arguments.subspan(1));
   if (first == "--help" || first == "-h") return print(kShortHelp);
   if (first == "--version") return print("sceneplay " SCENEGEN_VERSION "\n");
   if (first == "--list-devices") return list_devices_verb();
-  const std::array<std::string, 5> verbs{"frames", "bench", "experiment", "calibrate", "camera-path"};
+  const std::array<std::string, 6> verbs{"frames",    "bench",       "experiment",
+                                         "calibrate", "camera-path", "report"};
   if (first.starts_with('-')) {
     const std::array<std::string, 3> options{"--help", "--version", "--list-devices"};
     return report_error({ErrorKind::usage, "", unknown_word("option", first, options)});

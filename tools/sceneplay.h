@@ -11,6 +11,7 @@ int frames_verb(std::span<const std::string> arguments);
 int camera_path_verb(std::span<const std::string> arguments);
 int bench_verb(std::span<const std::string> arguments);
 int experiment_verb(std::span<const std::string> arguments);
+int report_verb(std::span<const std::string> arguments);
 /// Prints the Vulkan devices there are.
 int list_devices_verb();
 

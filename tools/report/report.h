@@ -1,0 +1,73 @@
+// Several runs as one report, and what its figures are beside the paper's.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/report/document.h"
+
+namespace scenegen::tools {
+
+/// What one machine found.
+struct ReportRun {
+  Document document;
+  std::string folder;  ///< that the paths of its pictures start from
+};
+
+struct RunReport {
+  std::string title;
+  std::vector<ReportRun> runs;
+};
+
+/// The device's name when the run's facts say it, else the title of its document.
+[[nodiscard]] std::string run_name(const ReportRun& run);
+/// Name of an id of a run's document in the whole report: "run1-queries".
+[[nodiscard]] std::string anchor(std::size_t run, const std::string& id);
+
+enum class Outcome : std::uint8_t { better, level, worse };
+/// Figures that differ by at most this share of the paper's are level: noise of one and rounding of the
+/// other.
+constexpr double kLevel = 0.02;
+
+/// One figure of ours beside the paper's.
+struct Comparison {
+  Outcome outcome = Outcome::level;
+  /// How many times better ours is, below 1: worse. None when one of both is not positive.
+  std::optional<double> factor = {};
+};
+
+/// None when the column is compared with nothing, a reader wants nothing of it, or one of both has no figure.
+[[nodiscard]] std::optional<Comparison> compare_cell(const DocumentTable& table, std::size_t row,
+                                                     std::size_t column);
+
+struct Tally {
+  std::size_t better = 0, level = 0, worse = 0;
+  std::vector<Comparison> all;  ///< in the order of the tables
+  [[nodiscard]] std::size_t count() const { return all.size(); }
+  /// Median of the factors.
+  [[nodiscard]] std::optional<double> typical() const;
+  void add(const Comparison& comparison);
+};
+[[nodiscard]] Tally tally(const DocumentSection& section);
+
+/// How the figures of one column are written for people: all with as many decimals, so that they can be
+/// compared down the column, unless they differ too much in size.
+struct ColumnFormat {
+  bool numeric = false;  ///< has figures and no words
+  double scale = 1;      ///< from the file's unit
+  std::string unit;      ///< after scaling: "MB"
+  int decimals = -1;     ///< -1: `digits` significant digits each
+  int digits = 3;
+};
+[[nodiscard]] ColumnFormat column_format(const DocumentTable& table, std::size_t column);
+/// "15 037 746", "0.0017", "-": thousands parted by narrow no-break spaces.
+[[nodiscard]] std::string cell_text(const Cell& cell, const ColumnFormat& format);
+/// A figure by itself, with three significant digits.
+[[nodiscard]] std::string figure_text(double value, int digits = 3);
+/// "1.8", "12", "140": of a factor.
+[[nodiscard]] std::string factor_text(double factor);
+
+}  // namespace scenegen::tools
