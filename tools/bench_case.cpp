@@ -83,7 +83,7 @@ Result<std::vector<BenchWay>> parse_ways(std::string_view text) {
 }
 
 std::string BenchCase::key() const {
-  return file + "|" + camera + "|" + std::to_string(frames_in_flight) + "|" + way.label;
+  return file + "|" + device + "|" + camera + "|" + std::to_string(frames_in_flight) + "|" + way.label;
 }
 
 ordered_json BenchRun::json() const {
@@ -92,6 +92,7 @@ ordered_json BenchRun::json() const {
   for (std::size_t i = 0; i < counters.size(); ++i)
     out["counters"][std::string(counter_fields()[i].name)] = counters[i];
   out["deviceBytes"] = device_bytes;
+  out["startMs"] = start_ms ? ordered_json(*start_ms) : ordered_json();
   out["warnings"] = warnings;
   return out;
 }
@@ -109,6 +110,7 @@ std::optional<BenchRun> BenchRun::from_json(const ordered_json& json) {
     for (const CounterField& field : counter_fields())
       run.counters.push_back(json.at("counters").at(std::string(field.name)).get<std::uint64_t>());
     run.device_bytes = json.at("deviceBytes").get<std::uint64_t>();
+    if (!json.at("startMs").is_null()) run.start_ms = json.at("startMs").get<double>();
     run.warnings = json.at("warnings").get<std::vector<std::string>>();
     const auto complete = [&](const std::vector<double>& v) { return v.size() == run.frame_ms.size(); };
     if (run.frame_ms.empty() || !complete(run.cpu_ms) ||
@@ -125,6 +127,11 @@ std::size_t moment_of_frame(std::int64_t frame, std::size_t moments) {
   const auto last = static_cast<std::int64_t>(moments) - 1;
   const std::int64_t there = ((frame % (2 * last)) + 2 * last) % (2 * last);
   return static_cast<std::size_t>(std::min(there, 2 * last - there));
+}
+
+void BenchSeat::forget() {
+  renderer_.reset();
+  player_.reset();
 }
 
 Result<void> BenchSeat::make() {
@@ -184,6 +191,8 @@ struct BenchSeat::Pass {
 Result<BenchRun> BenchSeat::run(const std::vector<double>& moments, std::uint32_t warm_up,
                                 const std::function<void(std::size_t, std::size_t)>& on_frame,
                                 nlohmann::ordered_json* trace) {
+  const bool fresh = !renderer_;
+  const Stopwatch since_scene;
   if (Result<void> made = make(); !made) return forward_error(made);
   Pass pass(moments.size());
   pass.next = -static_cast<std::int64_t>(warm_up);
@@ -201,6 +210,7 @@ Result<BenchRun> BenchSeat::run(const std::vector<double>& moments, std::uint32_
   render::FrameResult result;
   const auto finish_one = [&]() -> Result<void> {
     if (Result<void> done = renderer_->finish(result); !done) return done;
+    if (fresh && !pass.run.start_ms) pass.run.start_ms = since_scene.seconds() * 1e3;
     if (pass.finished(result.report, seek_ms.front()) && trace != nullptr)
       traced.push_back({result.report, views.front(), seek_ms.front()});
     seek_ms.pop_front();
@@ -213,9 +223,10 @@ Result<BenchRun> BenchSeat::run(const std::vector<double>& moments, std::uint32_
       if (Result<void> done = finish_one(); !done) return forward_error(done);
     }
     const Stopwatch watch;
-    const timeline::ChangeSet& changes = player_->seek(moments[moment_of_frame(i, moments.size())]);
+    const double time_s = moments[moment_of_frame(i, moments.size())];
+    const timeline::ChangeSet& changes = player_->seek(time_s);
     seek_ms.push_back(watch.seconds() * 1e3);
-    views.push_back(camera_.view(*player_));
+    views.push_back(camera_.view(*player_, time_s));
     if (Result<void> done = renderer_->submit(changes, *player_, views.back()); !done)
       return forward_error(done);
   }

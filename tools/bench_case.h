@@ -28,7 +28,8 @@ struct BenchWay {
 
 struct BenchCase {
   std::string file;
-  std::string camera;  ///< a camera path's file, or a camera of the scene as --camera names it
+  std::string device;  ///< its name
+  std::string camera;  ///< a camera path, or a camera of the scene as --camera names it
   std::uint32_t frames_in_flight = 2;
   BenchWay way;
 
@@ -45,6 +46,7 @@ struct BenchRun {
   std::vector<double> cpu_ms;                  ///< what the processor works for a frame
   std::vector<std::uint64_t> counters;         ///< sums over the frames, in the order of counter_fields()
   std::uint64_t device_bytes = 0;
+  std::optional<double> start_ms;  ///< from the scene in memory to the first frame; of a fresh renderer
   std::vector<std::string> warnings;
 
   [[nodiscard]] nlohmann::ordered_json json() const;
@@ -57,7 +59,7 @@ struct BenchRun {
 /// change as much as those that are measured.
 [[nodiscard]] std::size_t moment_of_frame(std::int64_t frame, std::size_t moments);
 
-/// A renderer and a player of its own for one case; made when first run, and kept for the next repetition.
+/// A renderer and a player of its own for one case; made when first run.
 class BenchSeat {
  public:
   BenchSeat(const Scene& scene, std::shared_ptr<const timeline::Timeline> timeline, CameraMan camera,
@@ -72,6 +74,8 @@ class BenchSeat {
   [[nodiscard]] Result<BenchRun> run(const std::vector<double>& moments, std::uint32_t warm_up,
                                      const std::function<void(std::size_t, std::size_t)>& on_frame,
                                      nlohmann::ordered_json* trace = nullptr);
+  /// The next run gets a renderer that knows nothing of this one.
+  void forget();
 
  private:
   struct Pass;

@@ -24,19 +24,12 @@ double quantile(const std::vector<double>& sorted, double share) {
   return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
-/// Student's t for 95 %, two-sided, by degrees of freedom from 1 on.
-double student95(std::size_t degrees) {
-  static constexpr std::array kTable{12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228,
-                                     2.201,  2.179, 2.160, 2.145, 2.131, 2.120, 2.110, 2.101, 2.093, 2.086,
-                                     2.080,  2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045, 2.042};
-  return degrees <= kTable.size() ? kTable[degrees - 1] : 1.96 + 2.5 / static_cast<double>(degrees);
-}
-
 ordered_json summary_json(const std::vector<double>& values) {
   // A device without timestamps knows no stage of its own.
   if (values.empty() || *std::min_element(values.begin(), values.end()) < 0) return nullptr;
   const Summary s = summarize(values);
-  return {{"mean", s.mean}, {"median", s.median}, {"p95", s.p95}, {"min", s.min}};
+  return {{"mean", s.mean}, {"median", s.median}, {"p25", s.p25},
+          {"p75", s.p75},   {"p95", s.p95},       {"min", s.min}};
 }
 
 /// The same stage of all runs, one behind the other.
@@ -60,8 +53,45 @@ ordered_json frame_json(const CaseResult& result) {
   return out;
 }
 
+double median_of(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return quantile(values, 0.5);
+}
+
+/// The frame time along the timeline: median over the runs, neighbouring frames joined where there are many.
+ordered_json over_time(const CaseResult& result) {
+  constexpr std::size_t kMost = 500;
+  const std::size_t frames = result.runs.front().frame_ms.size();
+  const std::size_t points = std::min(frames, kMost);
+  ordered_json times = ordered_json::array();
+  ordered_json values = ordered_json::array();
+  for (std::size_t point = 0; point < points; ++point) {
+    const std::size_t begin = point * frames / points;
+    const std::size_t end = (point + 1) * frames / points;
+    double time_s = 0;
+    std::vector<double> of_runs(result.runs.size(), 0);
+    for (std::size_t i = begin; i < end; ++i) {
+      time_s += result.moments_s[i];
+      for (std::size_t run = 0; run < of_runs.size(); ++run) of_runs[run] += result.runs[run].frame_ms[i];
+    }
+    const auto count = static_cast<double>(end - begin);
+    times.push_back(std::round(time_s / count * 1e6) / 1e6);
+    values.push_back(std::round(median_of(of_runs) / count * 1e5) / 1e5);
+  }
+  return {{"timeS", times}, {"frameMs", values}};
+}
+
+ordered_json start_json(const CaseResult& result) {
+  std::vector<double> starts;
+  for (const BenchRun& run : result.runs) {
+    if (run.start_ms) starts.push_back(*run.start_ms);
+  }
+  return starts.empty() ? ordered_json() : ordered_json(median_of(starts));
+}
+
 ordered_json case_json(const CaseResult& result, std::optional<double> best_ms) {
   ordered_json out{{"file", result.what.file},
+                   {"device", result.what.device},
                    {"camera", result.what.camera},
                    {"framesInFlight", result.what.frames_in_flight},
                    {"strategy", result.what.way.label}};
@@ -73,6 +103,8 @@ ordered_json case_json(const CaseResult& result, std::optional<double> best_ms) 
   out["frames"] = first.frame_ms.size();
   out["repetitions"] = result.runs.size();
   out["frameMs"] = frame_json(result);
+  if (result.moments_s.size() == first.frame_ms.size()) out["overTime"] = over_time(result);
+  out["startMs"] = start_json(result);
   out["totalMs"] = result.mean_ms() * frames;
   out["vsBest"] = result.mean_ms() / best_ms.value_or(result.mean_ms());
   out["cpuMs"] = summary_json(pooled(result.runs, [](const BenchRun& r) { return r.cpu_ms; }));
@@ -94,7 +126,15 @@ ordered_json case_json(const CaseResult& result, std::optional<double> best_ms) 
 
 Summary summarize(std::vector<double> values) {
   std::sort(values.begin(), values.end());
-  return {mean_of(values), quantile(values, 0.5), quantile(values, 0.95), values.front()};
+  return {mean_of(values),        quantile(values, 0.5),  quantile(values, 0.25),
+          quantile(values, 0.75), quantile(values, 0.95), values.front()};
+}
+
+double student95(std::size_t degrees) {
+  static constexpr std::array kTable{12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228,
+                                     2.201,  2.179, 2.160, 2.145, 2.131, 2.120, 2.110, 2.101, 2.093, 2.086,
+                                     2.080,  2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045, 2.042};
+  return degrees <= kTable.size() ? kTable[degrees - 1] : 1.96 + 2.5 / static_cast<double>(degrees);
 }
 
 std::optional<Interval> interval95(const std::vector<double>& repetitions) {

@@ -11,12 +11,18 @@
 
 namespace scenegen::tools {
 
+/// Of bench.json: docs/BENCH_FORMAT.md.
+constexpr std::string_view kBenchSchema = "sceneplay/bench";
+constexpr int kBenchVersion = 2;
+
 struct Summary {
-  double mean = 0, median = 0, p95 = 0, min = 0;
+  double mean = 0, median = 0, p25 = 0, p75 = 0, p95 = 0, min = 0;
 };
 /// Quantiles by linear interpolation between the nearest two. Not of nothing.
 [[nodiscard]] Summary summarize(std::vector<double> values);
 
+/// Student's t for 95 %, two-sided, by degrees of freedom from 1 on.
+[[nodiscard]] double student95(std::size_t degrees);
 /// 95 % interval of the mean of what `repetitions` (their means) are samples of, after Student. None for
 /// fewer than two.
 struct Interval {
@@ -29,13 +35,14 @@ struct CaseResult {
   BenchCase what;
   std::vector<BenchRun> runs;
   std::string error;
+  std::vector<double> moments_s = {};  ///< of the frames
 
   /// Mean milliseconds a frame of each run, and of all.
   [[nodiscard]] std::vector<double> run_means() const;
   [[nodiscard]] double mean_ms() const;
 };
 
-/// Cases of one scene, camera and number of frames in flight: those that are compared with each other.
+/// Cases that differ in the way of drawing alone: those that are compared with each other.
 struct GroupResult {
   std::vector<CaseResult> cases;
   /// The least mean of them; none when all failed.
@@ -44,6 +51,10 @@ struct GroupResult {
 
 /// Entries of "cases" in bench.json, flat.
 [[nodiscard]] nlohmann::ordered_json cases_json(const std::vector<GroupResult>& groups);
+/// Lines of columns, two blanks indented, the first to the left and the others to the right.
+[[nodiscard]] std::string aligned(const std::vector<std::vector<std::string>>& rows);
+/// Three digits that count: 0.0312, 4.68, 123.
+[[nodiscard]] std::string milliseconds_text(double ms);
 /// For people; at most 100 characters a line.
 [[nodiscard]] std::string group_table(const GroupResult& group);
 

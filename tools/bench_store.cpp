@@ -95,9 +95,12 @@ std::string RunStore::path(const BenchCase& what, std::uint32_t repetition) cons
 
 ordered_json RunStore::settings_of(const BenchCase& what) const {
   ordered_json out = settings_;
-  std::error_code error;
-  const std::uintmax_t bytes = fs::file_size(what.file, error);
-  out["fileBytes"] = error ? 0 : static_cast<std::uint64_t>(bytes);
+  for (const auto& [name, file] :
+       {std::pair("fileBytes", what.file), std::pair("cameraBytes", what.camera)}) {
+    std::error_code error;
+    const std::uintmax_t bytes = fs::file_size(file, error);
+    out[name] = error ? 0 : static_cast<std::uint64_t>(bytes);
+  }
   return out;
 }
 

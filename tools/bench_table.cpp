@@ -11,14 +11,6 @@
 namespace scenegen::tools {
 namespace {
 
-/// Three digits that count: 0.0312, 4.68, 123.
-std::string milliseconds(double ms) {
-  const int digits = ms >= 100 ? 1 : ms >= 10 ? 2 : 3;
-  std::array<char, 40> text{};
-  (void)std::snprintf(text.data(), text.size(), "%.*f", digits, ms);
-  return text.data();
-}
-
 double stage_mean(const CaseResult& result, std::string_view name) {
   double sum = 0;
   double count = 0;
@@ -59,12 +51,12 @@ std::vector<std::string> cells(const CaseResult& result, double best_ms) {
   std::array<char, 40> ratio{};
   (void)std::snprintf(ratio.data(), ratio.size(), "%.3f", mean / best_ms);
   return {result.what.way.label,
-          milliseconds(mean),
-          interval ? "±" + milliseconds(interval->high - mean) : "-",
-          milliseconds(s.median),
-          milliseconds(s.p95),
-          milliseconds(summarize(cpu).mean),
-          gpu < 0 ? "-" : milliseconds(gpu),
+          milliseconds_text(mean),
+          interval ? "±" + milliseconds_text(interval->high - mean) : "-",
+          milliseconds_text(s.median),
+          milliseconds_text(s.p95),
+          milliseconds_text(summarize(cpu).mean),
+          gpu < 0 ? "-" : milliseconds_text(gpu),
           per_frame(result, &render::FrameReport::drawn),
           per_frame(result, &render::FrameReport::queries),
           ratio.data()};
@@ -72,17 +64,15 @@ std::vector<std::string> cells(const CaseResult& result, double best_ms) {
 
 }  // namespace
 
-std::string group_table(const GroupResult& group) {
-  const BenchCase& what = group.cases.front().what;
-  std::string out = printable(what.file) + "  " +
-                    (what.camera.empty() ? "the file's camera" : printable(what.camera)) + "  " +
-                    std::to_string(what.frames_in_flight) +
-                    (what.frames_in_flight == 1 ? " frame in flight\n" : " frames in flight\n");
-  std::vector<std::vector<std::string>> rows{
-      {"strategy", "frame ms", "95 %", "median", "p95", "cpu ms", "gpu ms", "drawn", "queries", "vs best"}};
-  for (const CaseResult& result : group.cases) {
-    if (!result.runs.empty()) rows.push_back(cells(result, *group.best_ms()));
-  }
+std::string milliseconds_text(double ms) {
+  const int digits = ms >= 100 ? 1 : ms >= 10 ? 2 : 3;
+  std::array<char, 40> text{};
+  (void)std::snprintf(text.data(), text.size(), "%.*f", digits, ms);
+  return text.data();
+}
+
+std::string aligned(const std::vector<std::vector<std::string>>& rows) {
+  std::string out;
   for (std::size_t row = 0; row < rows.size(); ++row) {
     std::string line = " ";
     for (std::size_t i = 0; i < rows[row].size(); ++i) {
@@ -93,6 +83,21 @@ std::string group_table(const GroupResult& group) {
     }
     out += line + "\n";
   }
+  return out;
+}
+
+std::string group_table(const GroupResult& group) {
+  const BenchCase& what = group.cases.front().what;
+  std::string out = printable(what.file) + "  " + printable(what.device) + "  " +
+                    (what.camera.empty() ? "the file's camera" : printable(what.camera)) + "  " +
+                    std::to_string(what.frames_in_flight) +
+                    (what.frames_in_flight == 1 ? " frame in flight\n" : " frames in flight\n");
+  std::vector<std::vector<std::string>> rows{
+      {"strategy", "frame ms", "95 %", "median", "p95", "cpu ms", "gpu ms", "drawn", "queries", "vs best"}};
+  for (const CaseResult& result : group.cases) {
+    if (!result.runs.empty()) rows.push_back(cells(result, *group.best_ms()));
+  }
+  out += aligned(rows);
   for (const CaseResult& result : group.cases) {
     if (!result.error.empty())
       out += "  " + result.what.way.label + ": failed: " + printable(result.error) + "\n";

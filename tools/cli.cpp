@@ -47,6 +47,7 @@ struct Positional {
   std::function<void(const std::vector<std::string>&)> take;
   std::string help;
   CLI::Option* handle;
+  bool optional = false;
 };
 
 }  // namespace
@@ -135,12 +136,13 @@ void Options::positional(const std::string& name, std::string& target, std::stri
                                  std::move(help), state_->app.add_option(name)});
 }
 
-void Options::positional(const std::string& name, std::vector<std::string>& target, std::string help) {
+void Options::positional(const std::string& name, std::vector<std::string>& target, std::string help,
+                         bool optional) {
   CLI::Option* handle =
       state_->app.add_option(name.substr(0, name.find('.')))->expected(1, 1 << 20)->allow_extra_args();
   handle->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  state_->positionals.push_back(
-      {name, [&target](const std::vector<std::string>& texts) { target = texts; }, std::move(help), handle});
+  state_->positionals.push_back({name, [&target](const std::vector<std::string>& texts) { target = texts; },
+                                 std::move(help), handle, optional});
 }
 
 void Options::add_general(bool& quiet) {
@@ -202,6 +204,7 @@ Result<void> take_text(Option& option, const std::string& text, const std::strin
 Result<void> Options::State::take_positionals() {
   for (const Positional& positional : positionals) {
     if (positional.handle->count() == 0) {
+      if (positional.optional) continue;
       return fail(ErrorKind::usage, "", "missing " + positional.name + " (usage: " + usage.front() + ")");
     }
     positional.take(positional.handle->results());

@@ -119,8 +119,10 @@ class Options {
   void flag(const std::string& names, bool& target, std::string help, Role role = Role::once);
   /// An argument without a name; every one is required.
   void positional(const std::string& name, std::string& target, std::string help);
-  /// The last argument without a name, which may be given several times, at least once. `name`: "FILE...".
-  void positional(const std::string& name, std::vector<std::string>& target, std::string help);
+  /// The last argument without a name, which may be given several times, at least once unless `optional`.
+  /// `name`: "FILE...".
+  void positional(const std::string& name, std::vector<std::string>& target, std::string help,
+                  bool optional = false);
   /// --quiet, --version, --help.
   void add_general(bool& quiet);
   /// --config and --dump-config; parse() reads the file first, so that the command line wins.

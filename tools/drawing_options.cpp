@@ -85,9 +85,10 @@ void add_drawing_options(Options& options, DrawingOptions& d, Value strategy, Va
               "full: a full barrier at every step, to look for missing ones");
 }
 
-void add_device_options(Options& options, DrawingOptions& d) {
+void add_device_options(Options& options, DrawingOptions& d, std::optional<Value> several) {
   options.group("Device");
-  options.add("--device", text_value(d.device, "NAME|INDEX"), "Vulkan device", Role::run,
+  const char* help = several ? "Vulkan device; may be given several times" : "Vulkan device";
+  options.add("--device", several ? std::move(*several) : text_value(d.device, "NAME|INDEX"), help, Role::run,
               "a discrete GPU, else any");
   options.flag("--list-devices", d.list_devices,
                "print the Vulkan devices there are");  // handled before parsing
@@ -136,8 +137,8 @@ double CameraMan::played_s(double duration_s) const {
   return std::max(0.0, path_->keys.back().time_s);
 }
 
-render::View CameraMan::view(const timeline::Player& player) const {
-  if (path_) return path_->view(player.time_s(), aspect_);
+render::View CameraMan::view(const timeline::Player& player, double time_s) const {
+  if (path_) return path_->view(time_s, aspect_);
   if (camera_) return render::view_of_camera(*camera_, player.world_from_camera(id_), aspect_);
   return framed_;
 }

@@ -35,8 +35,8 @@ struct DrawingOptions {
 
 /// Group "Drawing". How --strategy and --frames-in-flight are read differs from verb to verb.
 void add_drawing_options(Options& options, DrawingOptions& drawing, Value strategy, Value frames_in_flight);
-/// Group "Device".
-void add_device_options(Options& options, DrawingOptions& drawing);
+/// Group "Device". `several`: how --device is read where it may be given several times.
+void add_device_options(Options& options, DrawingOptions& drawing, std::optional<Value> several = {});
 
 /// Prints those warnings of the renderer that are behind `known`, which counts them from then on.
 void print_warnings(const render::Renderer& renderer, std::size_t& known, bool quiet);
@@ -54,7 +54,11 @@ class CameraMan {
                                                  glm::uvec2 size);
   /// How long a scene with a timeline of `duration_s` is played: a still scene as long as the path moves.
   [[nodiscard]] double played_s(double duration_s) const;
-  [[nodiscard]] render::View view(const timeline::Player& player) const;
+  /// `time_s`: what the player was sent to; that of a still scene stays at 0.
+  [[nodiscard]] render::View view(const timeline::Player& player, double time_s) const;
+  [[nodiscard]] render::View view(const timeline::Player& player) const {
+    return view(player, player.time_s());
+  }
 
  private:
   float aspect_ = 1.0F;

@@ -323,17 +323,29 @@ void Progress::stage(std::string label) {
   drawn_ = true;
 }
 
-void Progress::draw() {
+void Progress::show(double spent_s, double left_s) {
+  if (due()) draw(spent_s / std::max(spent_s + left_s, 1e-9), left_s);
+}
+
+bool Progress::due() {
   constexpr auto kPatience = std::chrono::milliseconds(500);
   constexpr auto kBetween = std::chrono::milliseconds(100);
   const Clock::time_point now = Clock::now();
-  if (!active_ || total_ == 0 || now - start_ < kPatience || now - last_draw_ < kBetween) return;
+  if (!active_ || now - start_ < kPatience || now - last_draw_ < kBetween) return false;
   last_draw_ = now;
-  constexpr std::size_t kBar = 30;
+  return true;
+}
+
+void Progress::draw() {
+  if (total_ == 0 || !due()) return;
   const double share = std::min(1.0, static_cast<double>(done_) / static_cast<double>(total_));
+  const double elapsed_s = std::chrono::duration<double>(Clock::now() - start_).count();
+  draw(share, share > 0 ? elapsed_s * (1 - share) / share : 0);
+}
+
+void Progress::draw(double share, double left_s) {
+  constexpr std::size_t kBar = 30;
   const auto filled = static_cast<std::size_t>(share * static_cast<double>(kBar));
-  const double elapsed_s = std::chrono::duration<double>(now - start_).count();
-  const double left_s = share > 0 ? elapsed_s * (1 - share) / share : 0;
   const std::string bar = std::string(filled, '#') + std::string(kBar - filled, '.');
   (void)std::fprintf(stderr, "\r\x1b[K%s [%s] %3.0f %%  %s left", label_.c_str(), bar.c_str(), share * 100,
                      human_seconds(left_s).c_str());

@@ -104,6 +104,8 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void advance(std::uint64_t count = 1);
+  /// For work that tells its own time: seconds behind it and before it.
+  void show(double spent_s, double left_s);
   /// Steps of unlike work: shows the name of the step that begins.
   void stage(std::string label);
   /// Takes the line away until the next step, so that other output has the terminal to itself.
@@ -112,6 +114,9 @@ class Progress {
  private:
   using Clock = std::chrono::steady_clock;
   void draw();
+  void draw(double share, double left_s);
+  /// Whether to draw now.
+  bool due();
 
   std::string label_;
   std::uint64_t total_;

@@ -9,6 +9,7 @@ namespace scenegen::tools {
 int calibrate_verb(std::span<const std::string> arguments);
 int frames_verb(std::span<const std::string> arguments);
 int camera_path_verb(std::span<const std::string> arguments);
+int bench_compare_verb(std::span<const std::string> arguments);
 int bench_verb(std::span<const std::string> arguments);
 int experiment_verb(std::span<const std::string> arguments);
 int report_verb(std::span<const std::string> arguments);

@@ -136,7 +136,7 @@ class Filming {
       const Stopwatch watch;
       const timeline::ChangeSet& changes = player_.seek(time_s);
       seek_ms_.push_back(watch.seconds() * 1e3);
-      views_.push_back(camera_.view(player_));
+      views_.push_back(camera_.view(player_, time_s));
       if (Result<void> done = renderer_.submit(changes, player_, views_.back()); !done) return done;
     }
     while (renderer_.in_flight() > 0) {

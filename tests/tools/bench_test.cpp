@@ -7,10 +7,14 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "scene/gltf/read.h"
 #include "scene/gltf/write.h"
 #include "tests/render/render_support.h"
 #include "tests/tools/process.h"
+#include "timeline/compare.h"
+#include "tools/bench_clock.h"
 #include "tools/bench_results.h"
+#include "tools/bench_scenes.h"
 #include "tools/trace.h"
 
 using namespace scenegen;
@@ -90,8 +94,8 @@ TEST_CASE("ways of drawing are read with their modifiers") {
 TEST_CASE("bench: cases, runs, counters and both files") {
   const TemporaryFolder folder;
   const std::string out = folder.file("deep/out");
-  write_file(folder.file("path.json"), R"({"keys":[{"time_s":0,"eye_m":[0,2,9],"target_m":[0,1,0]}]})");
-  write_file(folder.file("far.json"), R"({"keys":[{"time_s":0,"eye_m":[0,9,30],"target_m":[0,1,0]}]})");
+  test::write_file(folder.file("path.json"), R"({"keys":[{"time_s":0,"eye_m":[0,2,9],"target_m":[0,1,0]}]})");
+  test::write_file(folder.file("far.json"), R"({"keys":[{"time_s":0,"eye_m":[0,9,30],"target_m":[0,1,0]}]})");
   const auto result = play("bench " + wall_file(folder) + " -o " + out +
                            " --strategy inline,octree:n=10:secondaries --frames 6 --repeat 2 --warm-up 3 "
                            "--size 32x18 --shadows off"
@@ -106,8 +110,13 @@ TEST_CASE("bench: cases, runs, counters and both files") {
   CHECK(runs_in(out).size() == 2 * 2 * 2 * 2);
   const nlohmann::json bench = results(out);
   CHECK(bench["schema"] == "sceneplay/bench");
-  CHECK(bench["version"] == 1);
-  CHECK_FALSE(bench["device"]["driver"].get<std::string>().empty());
+  CHECK(bench["version"] == 2);
+  REQUIRE(bench["devices"].size() == 1);
+  CHECK_FALSE(bench["devices"][0]["driver"].get<std::string>().empty());
+  CHECK(bench["settings"]["renderers"] == "fresh");
+  REQUIRE(bench["scenes"].size() == 1);
+  CHECK(bench["scenes"][0]["objects"] == 48);
+  CHECK(bench["scenes"][0]["loadMs"].get<double>() > 0);
   CHECK(bench["machine"]["cores"] >= 1);
   REQUIRE(bench["cases"].size() == 8);
   for (std::size_t i = 0; i < 8; i += 2) {
@@ -123,6 +132,13 @@ TEST_CASE("bench: cases, runs, counters and both files") {
     CHECK(by_inline["frameMs"]["low"] <= by_inline["frameMs"]["mean"]);
     CHECK(by_inline["totalMs"].get<double>() == Approx(6 * by_inline["frameMs"]["mean"].get<double>()));
     CHECK(by_inline["stagesMs"]["seek"]["mean"].get<double>() >= 0);
+    CHECK(by_inline["device"] == bench["devices"][0]["name"]);
+    CHECK(by_inline["frameMs"]["p25"] <= by_inline["frameMs"]["median"]);
+    CHECK(by_inline["frameMs"]["median"] <= by_inline["frameMs"]["p75"]);
+    CHECK(by_inline["startMs"].get<double>() > 0);
+    CHECK(by_inline["overTime"]["timeS"].size() == 6);
+    CHECK(by_inline["overTime"]["timeS"][0] == 0);
+    CHECK(by_inline["overTime"]["frameMs"].size() == 6);
     // Counters are those of the measured moments alone, and the same whatever was drawn before.
     CHECK(by_inline["sameCounters"] == true);
     CHECK(by_octree["sameCounters"] == true);
@@ -134,10 +150,11 @@ TEST_CASE("bench: cases, runs, counters and both files") {
   }
   const std::string trace = read_file(folder.file("trace.csv"));
   CHECK(line_count(trace) == 1 + 6 * 16);
-  CHECK(trace.starts_with("file,camera,framesInFlight,repetition,timeS,eyeM.x,eyeM.y,eyeM.z,forward.x,"));
+  CHECK(trace.starts_with(
+      "file,device,camera,framesInFlight,repetition,timeS,eyeM.x,eyeM.y,eyeM.z,forward.x,"));
   const std::string csv = read_file(out + "/bench.csv");
   CHECK(line_count(csv) == 9);
-  CHECK(csv.starts_with("file,camera,framesInFlight,strategy,objects,"));
+  CHECK(csv.starts_with("file,device,camera,framesInFlight,strategy,objects,"));
   CHECK(csv.find(",frameMs.mean,") != std::string::npos);
   CHECK(csv.find(",counters.draws,") != std::string::npos);
 }
@@ -202,7 +219,7 @@ TEST_CASE("bench --resume measures what is missing and nothing else") {
   REQUIRE(before.size() == 4);
   const auto [gone, kept] = std::pair(before.begin()->first, std::next(before.begin())->first);
   std::filesystem::remove(out + "/runs/" + gone);
-  write_file(out + "/runs/" + kept, before.at(kept).substr(0, 200));  // cut off
+  test::write_file(out + "/runs/" + kept, before.at(kept).substr(0, 200));  // cut off
   const auto resumed = play(call + "--strategy inline,octree,brute --resume");
   INFO(resumed.err);
   REQUIRE(resumed.code == 0);
@@ -246,7 +263,7 @@ TEST_CASE("bench: a run that is interrupted keeps what it had measured") {
 TEST_CASE("bench: what fails is named, and the rest is measured") {
   const TemporaryFolder folder;
   const std::string out = folder.file("out");
-  write_file(folder.file("broken.glb"), "glTF and nothing");
+  test::write_file(folder.file("broken.glb"), "glTF and nothing");
   const auto result = play("bench " + folder.file("broken.glb") + " " + wall_file(folder) + " -o " + out +
                            " --frames 3 --repeat 1 --size 32x18 --strategy inline");
   CHECK(result.code == 1);
@@ -258,6 +275,105 @@ TEST_CASE("bench: what fails is named, and the rest is measured") {
   CHECK(cases[1]["frames"] == 3);
   CHECK(cases[1]["frameMs"]["low"].is_null());  // one run has no spread
   CHECK(line_count(read_file(out + "/bench.csv")) == 3);
+}
+
+TEST_CASE("bench: several devices, one of them missing") {
+  const TemporaryFolder folder;
+  const std::string out = folder.file("out");
+  const auto result = play("bench " + wall_file(folder) + " -o " + out +
+                           " --frames 3 --repeat 2 --size 32x18 --shadows off --strategy inline,brute"
+                           " --device 0 --device nonesuch --device llvm --warm-up 2 --quiet");
+  CHECK(result.code == 2);
+  CHECK(line_count(result.err) == 1);
+  CHECK_THAT(result.err, Catch::Matchers::Contains("nonesuch"));
+  const nlohmann::json bench = results(out);
+  REQUIRE(bench["devices"].size() == 3);
+  const std::string name = bench["devices"][0]["name"];
+  CHECK_THAT(bench["devices"][1]["error"].get<std::string>(), Catch::Matchers::Contains("nonesuch"));
+  // The same card by another name is measured apart: that shows the noise.
+  CHECK(bench["devices"][2]["name"] == name + " #2");
+  REQUIRE(bench["cases"].size() == 6);
+  for (std::size_t i = 0; i < 6; ++i) {
+    const nlohmann::json& c = bench["cases"][i];
+    CHECK(c["device"] == bench["devices"][i / 2]["name"]);
+    CHECK(c.contains("error") == (i / 2 == 1));
+    CHECK(c.contains("frameMs") == (i / 2 != 1));
+  }
+  CHECK(bench["cases"][0]["counters"] == bench["cases"][4]["counters"]);
+}
+
+TEST_CASE("bench: renderers of their own make counters repeat; kept ones remember") {
+  const TemporaryFolder folder;
+  const std::string call = "bench " + wall_file(folder) +
+                           " --frames 12 --repeat 3 --size 32x18 --shadows off --warm-up 2 --quiet "
+                           "--strategy octree:n=4:secondaries,queries-all:n=4 --calibration none ";
+  REQUIRE(play(call + "-o " + folder.file("fresh")).code == 0);
+  REQUIRE(play(call + "--renderers kept -o " + folder.file("kept")).code == 0);
+  const nlohmann::json fresh = results(folder.file("fresh"))["cases"];
+  const nlohmann::json kept = results(folder.file("kept"))["cases"];
+  for (const nlohmann::json& c : fresh) CHECK(c["sameCounters"] == true);
+  // The chunks that one run leaves are not those that a new tree has.
+  CHECK((kept[0]["sameCounters"] == false || kept[1]["sameCounters"] == false));
+}
+
+TEST_CASE("bench: a still scene is seen from along its path") {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("still.glb");
+  Scene scene;
+  for (int i = 0; i < 20; ++i) {
+    const MeshId mesh = render::test::add_mesh(scene, render::test::box_geometry(),
+                                               render::test::plain({0.5F, 0.5F, 0.5F, 1}));
+    render::test::add_object(scene, "box" + std::to_string(i), mesh, {2.0F * static_cast<float>(i), 0.5F, 0});
+  }
+  REQUIRE(gltf::write(scene, file, {}));
+  REQUIRE(
+      play("bench " + file + " -o " + folder.file("out") +
+           " --camera-path walk --frames 5 --repeat 1 --size 32x18 --shadows off --strategy inline --quiet "
+           "--trace " +
+           folder.file("t.json"))
+          .code == 0);
+  const auto rows = nlohmann::json::parse(read_file(folder.file("t.json")))["frames"];
+  REQUIRE(rows.size() == 5);
+  CHECK(rows[0]["eyeM"] != rows[1]["eyeM"]);
+  CHECK(results(folder.file("out"))["cases"][0]["overTime"]["timeS"][4] == 10);
+}
+
+TEST_CASE("time left goes by the runs that took time") {
+  CHECK_FALSE(seconds_left(4, 0, 0, 0, 0));
+  CHECK(seconds_left(4, 0, 0, 1, 0.5) == Approx(7));  // 2 s a run, 3.5 runs left
+  CHECK(seconds_left(2, 3, 6, 1, 0.5) == Approx(3));
+  CHECK(seconds_left(0, 3, 6, 0, 0) == Approx(0));
+}
+
+TEST_CASE("scenes of --quick are those that scenegen makes with their arguments") {
+  const TemporaryFolder folder;
+  for (const BenchScene& quick : quick_scenes()) {
+    INFO(quick.name);
+    const auto scene = quick.load();
+    REQUIRE(scene);
+    std::vector<std::string> arguments = scene->info.arguments;
+    arguments.insert(arguments.end(), {"-q", "-o", folder.file("s.glb")});
+    REQUIRE(run(SCENEGEN_PROGRAM, arguments).code == 0);
+    const auto read = gltf::read(folder.file("s.glb"), {});
+    REQUIRE(read);
+    const auto found = timeline::compare(*scene, read->scene);
+    CHECK(found.times_compared > 100);
+    CHECK(found.equal());
+  }
+}
+
+TEST_CASE("bench: a disk that is full is said, and everything is measured all the same") {
+  const TemporaryFolder folder;
+  ProcessOptions full;
+  full.most_file_bytes = 500;
+  const auto result = play("bench " + wall_file(folder) + " -o " + folder.file("out") +
+                               " --frames 3 --repeat 2 --size 32x18 --shadows off --strategy inline,brute",
+                           full);
+  CHECK(result.code == 3);
+  CHECK(line_count(result.err) == 1);
+  CHECK_THAT(result.out, Catch::Matchers::Contains("inline") && Catch::Matchers::Contains("brute"));
+  CHECK_FALSE(std::filesystem::exists(folder.file("out/bench.json")));
+  CHECK(std::filesystem::is_empty(folder.file("out/runs")));
 }
 
 TEST_CASE("bench: wrong calls") {
@@ -273,7 +389,7 @@ TEST_CASE("bench: wrong calls") {
     CHECK(line_count(result.err) == 1);
     CHECK_THAT(result.err, Catch::Matchers::Contains(part));
   };
-  check_error("bench -o x", 2, "FILE");
+  check_error("bench -o x", 2, "--quick");
   check_error("bench " + file, 2, "--output");
   check_error(start + "--strategy inline,octre", 2, "did you mean 'octree'");
   check_error(start + "--frames-in-flight 0", 2, "--frames-in-flight");

@@ -1,0 +1,371 @@
+#include "tools/bench_report.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "tools/text.h"
+
+namespace scenegen::tools {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// The member at "frameMs/median", or null.
+ordered_json at(const ordered_json& object, const std::string& path) {
+  const ordered_json* here = &object;
+  for (std::size_t begin = 0; begin <= path.size();) {
+    const std::size_t end = std::min(path.find('/', begin), path.size());
+    const std::string name = path.substr(begin, end - begin);
+    if (!here->is_object() || !here->contains(name)) return {};
+    here = &here->at(name);
+    begin = end + 1;
+  }
+  return *here;
+}
+
+std::string text(const ordered_json& object, const std::string& path) {
+  const ordered_json value = at(object, path);
+  return value.is_string() ? value.get<std::string>() : "";
+}
+
+Cell cell(const ordered_json& value) {
+  if (value.is_number()) return value.get<double>();
+  if (value.is_string()) return value.get<std::string>();
+  return {};
+}
+
+std::string base_name(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
+/// A case and the file that it is from.
+struct Row {
+  const ordered_json* json;
+  const ordered_json* results;
+  std::string label;  ///< the way of drawing, with what else tells it from the others of its view
+};
+/// What is seen from one camera of one scene.
+struct BenchView {
+  std::string file, camera;
+  std::vector<Row> rows;
+  double best_ms = 0;
+
+  [[nodiscard]] std::string title() const { return file + (camera.empty() ? "" : ", " + camera); }
+};
+
+/// Labels that say what differs: device and frames in flight only where they do.
+void label(BenchView& view) {
+  std::set<std::string> devices;
+  std::set<std::string> in_flight;
+  for (const Row& row : view.rows) {
+    devices.insert(text(*row.json, "device"));
+    in_flight.insert(at(*row.json, "framesInFlight").dump());
+  }
+  for (Row& row : view.rows) {
+    row.label = text(*row.json, "strategy");
+    if (in_flight.size() > 1) row.label += ", " + at(*row.json, "framesInFlight").dump() + " in flight";
+    if (devices.size() > 1) row.label += ", " + text(*row.json, "device");
+  }
+}
+
+std::vector<BenchView> views_of(std::span<const ordered_json> results) {
+  std::vector<BenchView> out;
+  for (const ordered_json& result : results) {
+    const auto cases = result.find("cases");
+    if (cases == result.end() || !cases->is_array()) continue;
+    for (const ordered_json& c : *cases) {
+      const std::string file = base_name(text(c, "file"));
+      const std::string camera = base_name(text(c, "camera"));
+      auto view = std::find_if(out.begin(), out.end(),
+                               [&](const BenchView& v) { return v.file == file && v.camera == camera; });
+      if (view == out.end()) view = out.insert(out.end(), BenchView{file, camera, {}, 0});
+      view->rows.push_back({&c, &result, {}});
+      const ordered_json mean = at(c, "frameMs/mean");
+      if (mean.is_number() && (view->best_ms <= 0 || mean.get<double>() < view->best_ms))
+        view->best_ms = mean.get<double>();
+    }
+  }
+  for (BenchView& view : out) label(view);
+  return out;
+}
+
+Cell load_ms(const Row& row) {
+  const ordered_json scenes = at(*row.results, "scenes");
+  const ordered_json start = at(*row.json, "startMs");
+  for (const ordered_json& scene : scenes) {
+    const ordered_json load = at(scene, "loadMs");
+    if (text(scene, "file") == text(*row.json, "file") && load.is_number() && start.is_number())
+      return load.get<double>() + start.get<double>();
+  }
+  return cell(at(*row.json, "loadMs"));
+}
+
+Cell memory_bytes(const Row& row) {
+  const ordered_json own = at(*row.json, "memoryBytes");
+  return cell(own.is_number() ? own : at(*row.json, "deviceBytes"));
+}
+
+DocumentTable frame_table(const BenchView& view, const std::string& id) {
+  using enum Better;
+  DocumentTable out;
+  out.id = id;
+  out.title = "Frame time: " + view.title();
+  out.columns = {{"strategy", "way of drawing", ""},
+                 {"frameMs", "frame", "ms", Origin::ours, lower},
+                 {"low", "95 % from", "ms"},
+                 {"high", "to", "ms"},
+                 {"median", "median", "ms", Origin::ours, lower},
+                 {"p25", "25 %", "ms"},
+                 {"p75", "75 %", "ms"},
+                 {"p95", "95 %", "ms", Origin::ours, lower},
+                 {"cpuMs", "processor", "ms", Origin::ours, lower},
+                 {"gpuMs", "device", "ms", Origin::ours, lower},
+                 {"vsBest", "over the best", "", Origin::ours, lower},
+                 {"loadMs", "load to first frame", "ms", Origin::ours, lower},
+                 {"memoryBytes", "memory", "B", Origin::ours, lower},
+                 {"correctness", "pixels as ours", "%", Origin::ours, higher}};
+  std::string failures;
+  for (const Row& row : view.rows) {
+    const ordered_json& c = *row.json;
+    const ordered_json mean = at(c, "frameMs/mean");
+    out.rows.push_back({row.label, cell(mean), cell(at(c, "frameMs/low")), cell(at(c, "frameMs/high")),
+                        cell(at(c, "frameMs/median")), cell(at(c, "frameMs/p25")), cell(at(c, "frameMs/p75")),
+                        cell(at(c, "frameMs/p95")), cell(at(c, "cpuMs/mean")),
+                        cell(at(c, "stagesMs/gpu/mean")),
+                        mean.is_number() ? Cell(mean.get<double>() / view.best_ms) : Cell(), load_ms(row),
+                        memory_bytes(row), cell(at(c, "correctness"))});
+    if (const std::string error = text(c, "error"); !error.empty())
+      failures += " " + row.label + " failed: " + error + ".";
+  }
+  out.note =
+      "Mean with its 95 % interval over the runs (Student), median, quartiles and 95th percentile over all "
+      "frames." +
+      failures;
+  return out;
+}
+
+/// A table with a row a case and a column for each name of `member` that is above 0 anywhere.
+DocumentTable member_table(const BenchView& view, const std::string& id, const std::string& member,
+                           const std::string& suffix, const std::string& unit) {
+  DocumentTable out;
+  out.id = id;
+  out.columns = {{"strategy", "way of drawing", ""}};
+  std::vector<std::string> names;
+  for (const Row& row : view.rows) {
+    const ordered_json all = at(*row.json, member);
+    if (!all.is_object()) continue;
+    for (const auto& [name, value] : all.items()) {
+      const ordered_json figure = suffix.empty() ? value : at(value, suffix);
+      const bool counts = figure.is_number() && figure.get<double>() > 0;
+      if (counts && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+  }
+  for (const std::string& name : names) out.columns.push_back({name, name, unit});
+  for (const Row& row : view.rows) {
+    std::vector<Cell>& cells = out.rows.emplace_back(std::vector<Cell>{row.label});
+    for (const std::string& name : names)
+      cells.push_back(cell(at(*row.json, member + "/" + name + (suffix.empty() ? "" : "/" + suffix))));
+  }
+  return out;
+}
+
+DocumentTable stage_table(const BenchView& view, const std::string& id) {
+  DocumentTable out = member_table(view, id, "stagesMs", "mean", "ms");
+  out.title = "Where the time goes: " + view.title();
+  out.note =
+      "Means a frame. The processor seeks, updates, culls, records and submits; updateOctree is part of "
+      "update, "
+      "choose of cull, upload to receive of record. wait: the processor waits for the device. Those that "
+      "begin with gpu are the "
+      "device's.";
+  return out;
+}
+
+DocumentTable counter_table(const BenchView& view, const std::string& id) {
+  DocumentTable out = member_table(view, id, "counters", "", "");
+  out.title = "What was done: " + view.title();
+  out.note = "Exact counts, mean of a frame.";
+  return out;
+}
+
+Chart time_chart(const BenchView& view, const std::string& id) {
+  Chart out;
+  out.id = id;
+  out.title = "Frame time over the animation: " + view.title();
+  out.x_title = "time, s";
+  out.y_title = "frame time, ms";
+  for (const Row& row : view.rows) {
+    const ordered_json times = at(*row.json, "overTime/timeS");
+    const ordered_json values = at(*row.json, "overTime/frameMs");
+    if (!times.is_array() || !values.is_array() || times.size() != values.size()) continue;
+    Series series;
+    series.name = row.label;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      if (times[i].is_number() && values[i].is_number())
+        series.points.push_back({times[i].get<double>(), values[i].get<double>()});
+    }
+    if (series.points.size() > 1) out.series.push_back(std::move(series));
+  }
+  out.note = "Median over the runs.";
+  return out;
+}
+
+/// Frame times of all views, a line a way of drawing.
+Chart overview_chart(const std::vector<BenchView>& views, const std::string& id) {
+  Chart out;
+  out.id = id;
+  out.title = "Frame time by view";
+  out.x_title = "view";
+  out.y_title = "frame time, ms";
+  out.log_y = true;
+  std::map<std::string, std::size_t> known;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    out.note += (v == 0 ? "" : "; ") + std::to_string(v + 1) + ": " + views[v].title();
+    for (const Row& row : views[v].rows) {
+      const ordered_json mean = at(*row.json, "frameMs/mean");
+      if (!mean.is_number() || mean.get<double>() <= 0) continue;
+      const auto [place, added] = known.emplace(row.label, out.series.size());
+      if (added) out.series.push_back({row.label, {}});
+      ChartPoint point{static_cast<double>(v + 1), mean.get<double>()};
+      const ordered_json low = at(*row.json, "frameMs/p25");
+      const ordered_json high = at(*row.json, "frameMs/p75");
+      if (low.is_number() && high.is_number()) {
+        // Quartiles need not lie round a mean; the bar does.
+        point.low = std::min(point.y, low.get<double>());
+        point.high = std::max(point.y, high.get<double>());
+      }
+      out.series[place->second].points.push_back(point);
+    }
+  }
+  out.note += ". Means; bars span the middle half of the frames.";
+  return out;
+}
+
+/// "adaptive is fastest in 6 of 10 views, inline in 4."
+std::string summary(const std::vector<BenchView>& views) {
+  std::map<std::string, int> wins;
+  int counted_views = 0;
+  std::size_t failed = 0;
+  for (const BenchView& view : views) {
+    for (const Row& row : view.rows) {
+      failed += row.json->contains("error") ? 1 : 0;
+      const ordered_json mean = at(*row.json, "frameMs/mean");
+      if (!mean.is_number() || mean.get<double>() > view.best_ms) continue;
+      ++wins[row.label];
+      ++counted_views;
+      break;
+    }
+  }
+  std::vector<std::pair<int, std::string>> order;
+  for (const auto& [name, count] : wins) order.emplace_back(-count, name);
+  std::sort(order.begin(), order.end());
+  std::string out;
+  for (const auto& [count, name] : order) {
+    out += out.empty() ? name + " is fastest in " + std::to_string(-count) + " of " +
+                             counted(static_cast<std::uint64_t>(counted_views), "view")
+                       : ", " + name + " in " + std::to_string(-count);
+  }
+  out = out.empty() ? "Nothing was measured" : out;
+  if (failed > 0) out += "; " + counted(failed, "case") + " failed";
+  return out + ".";
+}
+
+std::string machine_line(const ordered_json& results) {
+  std::string out = text(results, "program/name") + " " + text(results, "program/version");
+  for (const ordered_json& device : at(results, "devices")) {
+    out += ", " + text(device, "name");
+    const std::string driver = text(device, "driver");
+    out += !driver.empty() ? " (" + driver + ")" : text(device, "error").empty() ? "" : " (missing)";
+  }
+  if (const std::string processor = text(results, "machine/processor"); !processor.empty())
+    out += ", " + at(results, "machine/cores").dump() + " cores of " + processor;
+  const ordered_json size = at(results, "settings/size");
+  if (size.is_array() && size.size() == 2) out += ", " + size[0].dump() + "x" + size[1].dump() + " pixels";
+  const ordered_json samples = at(results, "settings/samples");
+  if (samples.is_number()) out += ", " + samples.dump() + (samples == 1 ? " sample" : " samples");
+  const ordered_json readback = at(results, "settings/readback");
+  if (readback.is_boolean())
+    out += readback.get<bool>() ? ", pixels read back" : ", pixels stay on the device";
+  return out + ".";
+}
+
+}  // namespace
+
+DocumentSection bench_section_of_all(std::span<const ordered_json> results, const std::string& id) {
+  const std::vector<BenchView> views = views_of(results);
+  DocumentSection out{id, "Benchmark", {summary(views)}, {}};
+  for (const ordered_json& result : results) out.paragraphs.push_back(machine_line(result));
+  if (views.size() > 1) {
+    if (Chart chart = overview_chart(views, id + "-views"); !chart.series.empty())
+      out.blocks.emplace_back(std::move(chart));
+  }
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const std::string tail = "-" + std::to_string(v + 1);
+    out.blocks.emplace_back(frame_table(views[v], id + "-frame" + tail));
+    if (Chart chart = time_chart(views[v], id + "-time" + tail); !chart.series.empty())
+      out.blocks.emplace_back(std::move(chart));
+    for (DocumentTable table :
+         {stage_table(views[v], id + "-stages" + tail), counter_table(views[v], id + "-counters" + tail)}) {
+      if (table.columns.size() > 1) out.blocks.emplace_back(std::move(table));
+    }
+  }
+  return out;
+}
+
+DocumentSection bench_section(const ordered_json& results) {
+  return bench_section_of_all(std::span(&results, 1));
+}
+
+DocumentSection comparison_section(const BenchComparison& c, const std::string& id) {
+  using enum Better;
+  DocumentSection out{id, "Comparison", {}, {}};
+  out.paragraphs.push_back(counted(c.count(Change::faster), "case") + " of " +
+                           std::to_string(c.cases.size()) + " faster in B, " +
+                           std::to_string(c.count(Change::slower)) + " slower.");
+  out.paragraphs.push_back("A: " + c.a + "; B: " + c.b + ".");
+  for (const auto* list : {&c.warnings, &c.failed_a, &c.failed_b})
+    out.paragraphs.insert(out.paragraphs.end(), list->begin(), list->end());
+  for (const std::string& name : c.only_a) out.paragraphs.push_back("Only in A: " + name);
+  for (const std::string& name : c.only_b) out.paragraphs.push_back("Only in B: " + name);
+  DocumentTable times;
+  times.id = id + "-times";
+  times.title = "Frame times";
+  times.columns = {{"file", "scene", ""},
+                   {"camera", "camera", ""},
+                   {"framesInFlight", "in flight", ""},
+                   {"strategy", "way of drawing", ""},
+                   {"aMs", "A", "ms"},
+                   {"bMs", "B", "ms", Origin::ours, lower},
+                   {"percent", "B - A", "%"},
+                   {"lowPercent", "95 % from", "%"},
+                   {"highPercent", "to", "%"},
+                   {"change", "frame time", ""}};
+  times.note = "Means; the interval of their difference over the runs is Welch's.";
+  DocumentTable counters;
+  counters.id = id + "-counters";
+  counters.title = "Counters that differ";
+  counters.columns = {
+      {"file", "scene", ""},      {"camera", "camera", ""}, {"strategy", "way of drawing", ""},
+      {"counter", "counter", ""}, {"a", "A", ""},           {"b", "B", ""}};
+  for (const CaseChange& k : c.cases) {
+    const double percent = 100 / k.mean_a_ms;
+    const auto bound = [&](double ms) { return k.difference_ms ? Cell(ms * percent) : Cell(); };
+    const std::string file = base_name(k.what.file);
+    times.rows.push_back({file, k.what.camera, static_cast<double>(k.what.frames_in_flight), k.what.way.label,
+                          k.mean_a_ms, k.mean_b_ms, (k.mean_b_ms - k.mean_a_ms) * percent,
+                          bound(k.difference_ms.value_or(Interval{}).low),
+                          bound(k.difference_ms.value_or(Interval{}).high), std::string(name_of(k.change))});
+    for (const CounterChange& n : k.counters)
+      counters.rows.push_back({file, k.what.camera, k.what.way.label, n.name, n.a, n.b});
+  }
+  out.blocks.emplace_back(std::move(times));
+  if (!counters.rows.empty()) out.blocks.emplace_back(std::move(counters));
+  return out;
+}
+
+}  // namespace scenegen::tools

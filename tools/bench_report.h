@@ -1,0 +1,23 @@
+// Results of benchmarks as tables and charts for `sceneplay report`.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+
+#include "tools/bench_compare.h"
+#include "tools/report/document.h"
+
+namespace scenegen::tools {
+
+/// One section of any number of results (docs/BENCH_FORMAT.md), ours and other renderers': cases of the same
+/// scene and camera stand in one table, whatever file they are from. A member that is missing or of another
+/// kind is an empty cell. Ids begin with `id`.
+[[nodiscard]] DocumentSection bench_section_of_all(std::span<const nlohmann::ordered_json> results,
+                                                   const std::string& id = "bench");
+[[nodiscard]] DocumentSection bench_section(const nlohmann::ordered_json& results);
+
+[[nodiscard]] DocumentSection comparison_section(const BenchComparison& comparison,
+                                                 const std::string& id = "comparison");
+
+}  // namespace scenegen::tools
