@@ -24,7 +24,7 @@ class BabylonViewer {
 
   constructor(canvas, options) {
     this.options = options;
-    this.engine = new Engine(canvas, true, { alpha: options.background === null, premultipliedAlpha: true, doNotHandleContextLost: true });
+    this.engine = new Engine(canvas, options.antialias, { alpha: options.background === null, premultipliedAlpha: true, doNotHandleContextLost: true });
     this.engine.getCaps().parallelShaderCompile = undefined;  // a frame then is whole when it has been drawn
     const folder = new URL(`${options.decoders}babylon/`, document.baseURI).href;
     DracoDecoder.DefaultConfiguration = {
@@ -54,11 +54,15 @@ class BabylonViewer {
     this.sun = new DirectionalLight('sun', new Vector3(-0.5, -1, -0.35), this.scene);
     this.sun.diffuse = new Color3(1, 0.95, 0.88);
     this.sun.intensity = 2.2;
+    if (this.options.shadows) this.addShadows();
+    this.scene.imageProcessingConfiguration.toneMappingEnabled = true;
+    this.scene.imageProcessingConfiguration.toneMappingType = 2;  // Khronos PBR neutral, as in three.mjs
+  }
+
+  addShadows() {
     this.shadows = new ShadowGenerator(2048, this.sun);
     this.shadows.bias = 0.001;  // of the depth that the map covers: with less, surfaces shade themselves in stripes
     this.shadows.usePercentageCloserFiltering = true;
-    this.scene.imageProcessingConfiguration.toneMappingEnabled = true;
-    this.scene.imageProcessingConfiguration.toneMappingType = 2;  // Khronos PBR neutral, as in three.mjs
   }
 
   async load(source) {
@@ -101,6 +105,7 @@ class BabylonViewer {
 
   placeSun() {
     this.sun.position = this.center.subtract(this.sun.direction.normalizeToNew().scale(2 * this.radius));
+    if (!this.options.shadows) return;
     this.shadows.getShadowMap().renderList = this.container.meshes;
     for (const mesh of this.container.meshes) mesh.receiveShadows = true;
   }

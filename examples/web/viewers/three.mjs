@@ -10,17 +10,21 @@ import { eyeAround, kDefaults, readPixels } from './viewer.mjs';
 
 const kYfovRad = 0.6;
 
-function addLights(scene, renderer, flat) {
+function addLights(scene, renderer, { flat, shadows, plainLight }) {
   if (flat) {  // a surface then has exactly its base colour
     scene.add(new THREE.AmbientLight(0xffffff, Math.PI));
     return null;
   }
-  const generator = new THREE.PMREMGenerator(renderer);
-  scene.environment = generator.fromScene(new RoomEnvironment(), 0.04, 0.1, 100, { size: 64 }).texture;
-  scene.environmentIntensity = 0.55;
-  generator.dispose();
+  if (plainLight) {
+    scene.add(new THREE.HemisphereLight(0xffffff, 0x736b66, 1.6));
+  } else {
+    const generator = new THREE.PMREMGenerator(renderer);
+    scene.environment = generator.fromScene(new RoomEnvironment(), 0.04, 0.1, 100, { size: 64 }).texture;
+    scene.environmentIntensity = 0.55;
+    generator.dispose();
+  }
   const sun = new THREE.DirectionalLight(0xfff3e0, 2.4);
-  sun.castShadow = true;
+  sun.castShadow = shadows;
   sun.shadow.mapSize.set(2048, 2048);
   sun.shadow.normalBias = 0.02;
   scene.add(sun, sun.target);
@@ -71,12 +75,12 @@ class ThreeViewer {
 
   constructor(canvas, options) {
     this.options = options;
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: options.background === null });
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: options.antialias, alpha: options.background === null });
     this.renderer.toneMapping = options.flat ? THREE.NoToneMapping : THREE.NeutralToneMapping;
-    this.renderer.shadowMap.enabled = !options.flat;
+    this.renderer.shadowMap.enabled = !options.flat && options.shadows;
     this.scene = new THREE.Scene();
     if (options.background !== null) this.scene.background = new THREE.Color(`rgb(${options.background.join(',')})`);
-    this.sun = addLights(this.scene, this.renderer, options.flat);
+    this.sun = addLights(this.scene, this.renderer, options);
     this.camera = new THREE.PerspectiveCamera(THREE.MathUtils.radToDeg(kYfovRad), canvas.width / canvas.height, 0.1, 1000);
     this.controls = options.controls ? new OrbitControls(this.camera, canvas) : null;
     this.draco = new DRACOLoader().setDecoderPath(`${options.decoders}three/`);
@@ -103,7 +107,7 @@ class ThreeViewer {
     this.ball = this.measure();
     if (this.sun !== null) {
       placeSun(this.sun, this.ball);
-      this.root.traverse((object) => { object.castShadow = object.receiveShadow = object.isMesh === true; });
+      if (this.options.shadows) this.root.traverse((object) => { object.castShadow = object.receiveShadow = object.isMesh === true; });
     }
     this.seek(0);
     return { duration_s: this.duration_s };

@@ -15,9 +15,12 @@
 //   background  [r, g, b] in 0 … 255 (sRGB); none: transparent
 //   flat        true: colours as they stand in the file, no light and shade (for tests on pixels)
 //   controls    true: orbit with mouse or fingers
+//   antialias   false: one sample a pixel
+//   shadows     false: the sun throws none
+//   plainLight  true: a sun and a sky, and no picture of surroundings in which surfaces are mirrored
 //   decoders    folder URL of the Draco decoders (server.mjs says where they come from); default 'vendor/'
 
-export const kDefaults = { background: null, flat: false, controls: false, decoders: 'vendor/' };
+export const kDefaults = { background: null, flat: false, controls: false, antialias: true, shadows: true, plainLight: false, decoders: 'vendor/' };
 
 /// The default framebuffer of a WebGL context, read in the task that drew it. GL's rows start at the bottom.
 export function readPixels(gl) {
