@@ -47,13 +47,20 @@ Result<render::Calibration> measure_quickly(render::CalibrationOptions options, 
 
 }  // namespace
 
-Result<std::string> store_calibration(const render::Calibration& calibration) {
-  Result<std::string> path = render::calibration_path(calibration.key);
+Result<std::string> calibration_place(const render::CalibrationKey& key) {
+  Result<std::string> path = render::calibration_path(key);
   if (!path) return path;
   std::error_code error;
   const std::filesystem::path folder = std::filesystem::path(*path).parent_path();
   std::filesystem::create_directories(folder, error);
   if (error) return fail(ErrorKind::io, folder.string(), "cannot be made: " + error.message());
+  if (Result<void> writable = check_output_file(*path); !writable) return forward_error(writable);
+  return path;
+}
+
+Result<std::string> store_calibration(const render::Calibration& calibration) {
+  Result<std::string> path = calibration_place(calibration.key);
+  if (!path) return path;
   if (Result<void> written = write_file(*path, render::calibration_json(calibration)); !written)
     return forward_error(written);
   return path;

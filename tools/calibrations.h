@@ -9,6 +9,9 @@
 
 namespace scenegen::tools {
 
+/// Where the user's cache keeps the calibration of `key`; its folder is made, and a file can be written
+/// there.
+[[nodiscard]] Result<std::string> calibration_place(const render::CalibrationKey& key);
 /// Replaces the file in the user's cache as a whole, or makes it. Gives its path.
 [[nodiscard]] Result<std::string> store_calibration(const render::Calibration& calibration);
 

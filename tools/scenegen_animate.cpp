@@ -56,6 +56,7 @@ struct Animated {
   std::uint64_t excluded = 0, split_objects = 0, expanded = 0;
   std::vector<std::uint64_t> objects_of_profile = std::vector<std::uint64_t>(timeline::kProfileCount);
   std::vector<std::string> notes;
+  std::vector<gltf::OutputFile> files;  ///< complete, not yet in their places
   double seconds = 0;
 };
 
@@ -276,6 +277,7 @@ Result<Animated> animate(const AnimateRequest& r, const std::vector<std::string>
     gltf::PatchOptions options;
     options.visibility = r.visibility;
     options.material_copy_of = profiled->copy_of;
+    options.later = &out.files;
     auto file = gltf::patch(*read.source, scene, r.output, options);
     if (!file) return forward_error(file);
     out.file = std::move(*file);
@@ -359,6 +361,7 @@ Result<int> work(AnimateRequest& r, const std::vector<std::string>& arguments) {
                    .notes = made->notes,
                    .text = finished_line(r, *made),
                    .report = r.report,
+                   .files = &made->files,
                    .format = r.format,
                    .quiet = r.quiet,
                    .stdout_taken = r.report == "-" || (r.output == "-" && !r.dry_run)});

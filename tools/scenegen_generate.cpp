@@ -22,6 +22,7 @@ struct Made {
   gltf::WriteReport file;
   std::optional<AppearanceInfo> appearance;
   std::vector<std::string> notes;
+  std::vector<gltf::OutputFile> files;  ///< complete, not yet in their places
   double seconds = 0;
 };
 
@@ -91,7 +92,9 @@ Result<Made> make(const GenerateRequest& r, const std::vector<std::string>& argu
     gen::drive_machines(scene, generated->machines, r.appearance.threads);
   }
   progress.stage(r.dry_run ? "measuring" : "writing " + r.output);
-  auto file = r.dry_run ? gltf::predict(scene, r.output, r.file) : gltf::write(scene, r.output, r.file);
+  gltf::WriteOptions options = r.file;
+  options.later = &made.files;
+  auto file = r.dry_run ? gltf::predict(scene, r.output, options) : gltf::write(scene, r.output, options);
   if (!file) return forward_error(file);
   made.file = std::move(*file);
   made.notes.insert(made.notes.end(), made.file.notes.begin(), made.file.notes.end());
@@ -190,6 +193,7 @@ Result<int> work(GenerateRequest& r, const std::vector<std::string>& arguments) 
                    .notes = made->notes,
                    .text = finished_line(r, *made),
                    .report = r.report,
+                   .files = &made->files,
                    .format = r.format,
                    .quiet = r.quiet,
                    .stdout_taken = r.report == "-" || (r.output == "-" && !r.dry_run)});

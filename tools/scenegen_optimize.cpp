@@ -32,6 +32,7 @@ struct Optimized {
   gltf::Survey before;
   OptimizeReport content;
   gltf::WriteReport file;
+  std::vector<gltf::OutputFile> files;  ///< complete, not yet in their places
   double seconds = 0;
 };
 
@@ -67,10 +68,11 @@ Result<Optimized> run(const OptimizeRequest& r) {
   const Stopwatch stopwatch;
   gltf::WriteOptions file_options = r.file;
   file_options.id_table = true;
+  Optimized out;
+  file_options.later = &out.files;
   Progress progress("reading " + r.input, 0, r.quiet);
   auto read = gltf::read(r.input, {.keep_source = true});
   if (!read) return forward_error(read);
-  Optimized out;
   auto before = gltf::survey(*read);
   if (!before) return forward_error(before);
   if (!before->losses.empty() && !r.allow_loss)
@@ -206,6 +208,7 @@ Result<int> work(const OptimizeRequest& r) {
                    .notes = all_notes(*made),
                    .text = facts.str(Format::table) + "\n" + finished_line(r, *made),
                    .report = r.report,
+                   .files = &made->files,
                    .format = r.format,
                    .quiet = r.quiet,
                    .stdout_taken = r.report == "-" || (r.output == "-" && !r.dry_run)});

@@ -37,6 +37,7 @@ struct Scheduled {
   float duration_s = 0;
   gltf::WriteReport file;
   std::vector<std::string> notes;
+  std::vector<gltf::OutputFile> files;  ///< complete, not yet in their places
   double seconds = 0;
 };
 
@@ -148,24 +149,21 @@ Result<Scheduled> schedule(const ScheduleRequest& r, const std::vector<std::stri
   out.duration_s = scene.duration_s;
   if (r.dry_run || r.format != Format::table || !r.report.empty())
     out.moments = timeline::statistics(scene, 1).moments;
-  std::optional<gltf::OutputFile> mapping_file;  // in its place only when the model is: both or none
   if (!r.save_mapping.empty()) {
     auto prepared = prepare_file(r.save_mapping, out.saved_mapping);
     if (!prepared) return forward_error(prepared);
-    mapping_file.emplace(std::move(*prepared));
+    out.files.push_back(std::move(*prepared));
   }
   if (!r.dry_run) {
     progress.stage("writing " + r.output);
     gltf::PatchOptions options;
     options.visibility = r.visibility;
     options.material_copy_of = profiled->copy_of;
+    options.later = &out.files;
     auto file = gltf::patch(source, scene, r.output, options);
     if (!file) return forward_error(file);
     out.file = std::move(*file);
     out.notes.insert(out.notes.end(), out.file.notes.begin(), out.file.notes.end());
-  }
-  if (mapping_file) {
-    if (auto placed = mapping_file->commit(); !placed) return forward_error(placed);
   }
   out.seconds = stopwatch.seconds();
   return out;
@@ -341,6 +339,7 @@ Result<int> work(const ScheduleRequest& r, const std::vector<std::string>& argum
            .text = (r.dry_run ? mapping_table(*made, Format::table) : "") + finished_line(r, *made),
            .csv = mapping_table(*made, Format::csv),
            .report = r.report,
+           .files = &made->files,
            .format = r.format,
            .quiet = r.quiet,
            .stdout_taken = r.report == "-" || r.save_mapping == "-" || (r.output == "-" && !r.dry_run)});

@@ -70,10 +70,19 @@ std::string table(const render::Calibration& c) {
 }
 
 Result<void> run(const CalibrateRequest& request) {
-  if (!request.output.empty()) {
-    if (Result<void> good = check_output_file(request.output); !good) return good;
-  }
   render::CalibrationOptions how = request.how;
+  auto device = render::share_device(how.device);
+  if (!device) return forward_error(device);
+  how.shared_device = std::move(*device);
+  std::string path = request.output;  // it must be possible to write there before a minute is spent
+  if (path.empty()) {
+    Result<std::string> place = calibration_place(
+        render::calibration_key(render::info_of(*how.shared_device), how.size, how.samples, how.shadows));
+    if (!place) return forward_error(place);
+    path = std::move(*place);
+  } else if (Result<void> good = check_output_file(path); !good) {
+    return good;
+  }
   const Stopwatch watch;
   Result<render::Calibration> measured = [&] {
     Progress progress("calibrating", 100, request.quiet);
@@ -84,14 +93,7 @@ Result<void> run(const CalibrateRequest& request) {
     return render::calibrate(how);
   }();
   if (!measured) return forward_error(measured);
-  std::string path = request.output;
-  if (path.empty()) {
-    Result<std::string> stored = store_calibration(*measured);
-    if (!stored) return forward_error(stored);
-    path = *stored;
-  } else if (Result<void> written = write_file(path, render::calibration_json(*measured)); !written) {
-    return written;
-  }
+  if (Result<void> written = write_file(path, render::calibration_json(*measured)); !written) return written;
   if (request.show) {
     if (Result<void> written = write_stdout(table(*measured)); !written) return written;
   }

@@ -23,12 +23,17 @@ int run_verb(Options& options, std::span<const std::string> arguments, const Ver
 }
 
 Result<void> say(const Answer& answer) {
+  std::vector<gltf::OutputFile> none;
+  std::vector<gltf::OutputFile>& files = answer.files != nullptr ? *answer.files : none;
+  if (!answer.report.empty()) {
+    auto report = prepare_file(answer.report, pretty(answer.facts.json()));
+    if (!report) return forward_error(report);
+    files.push_back(std::move(*report));
+  }
+  if (auto placed = gltf::commit_all(files); !placed) return placed;
   if (!answer.quiet) {
     for (const std::string& note : answer.notes)
       (void)std::fprintf(stderr, "note: %s\n", printable(note).c_str());
-  }
-  if (!answer.report.empty()) {
-    if (auto written = write_file(answer.report, pretty(answer.facts.json())); !written) return written;
   }
   if (answer.format == Format::csv && answer.csv) return write_stdout(*answer.csv);
   if (answer.format != Format::table) return write_stdout(answer.facts.str(answer.format));

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/gltf/write_files.h"
 #include "scene/result.h"
 #include "tools/cli.h"
 #include "tools/output.h"
@@ -30,10 +31,13 @@ struct Answer {
   std::string text;                     ///< for people
   std::optional<std::string> csv = {};  ///< instead of the facts
   std::string report = {};              ///< --report
+  /// Complete files that are put in their places once the report is complete too: all or none.
+  std::vector<gltf::OutputFile>* files = nullptr;
   Format format = Format::table;
   bool quiet = false;
   bool stdout_taken = false;  ///< by a file: the text goes to stderr
 };
+/// Nothing is said before the files are in their places.
 [[nodiscard]] Result<void> say(const Answer& answer);
 
 /// Options that need stdout, which `--output -` or `--report -` takes. `output`: "" when nothing is written.

@@ -224,7 +224,7 @@ Result<WriteReport> patch_document(const SourceDocument& source, const Scene& sc
   const BufferPatch buffers = plan_buffers(input, nodes, tracks, *form, path, binary);
   const TextPatch patched = make_splices(text, input, nodes, buffers, assets);
   return write_content(PatchedDocument(input, nodes, tracks, buffers, patched, text.text()), *form, path,
-                       binary);
+                       binary, options.later);
 }
 
 }  // namespace

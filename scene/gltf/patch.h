@@ -19,6 +19,7 @@ struct PatchOptions {
   VisibilityEncoding visibility = VisibilityEncoding::scale;
   /// For materials behind those of the file: the one it copies but for base colour, or none (a plain one).
   std::span<const MaterialId> material_copy_of;
+  std::vector<OutputFile>* later = nullptr;  ///< as in WriteOptions
 };
 
 /// `scene` is what read() gave with `source`, plus tracks, frames, meshes (of the file's geometries) and

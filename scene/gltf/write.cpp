@@ -24,7 +24,7 @@ Result<WriteReport> write(const Scene& scene, const std::string& path, const Wri
   if (Result<void> writable = check_writable(scene); !writable) return forward_error(writable);
   Document document(scene, options);
   if (Result<void> fits = prepare(document, path, *form); !fits) return forward_error(fits);
-  return write_content(document, *form, path, binary_path(path));
+  return write_content(document, *form, path, binary_path(path), options.later);
 }
 
 Result<WriteReport> predict(const Scene& scene, const std::string& path, const WriteOptions& options) {

@@ -12,6 +12,8 @@
 
 namespace scenegen::gltf {
 
+class OutputFile;
+
 enum class Layout : std::uint8_t {
   automatic,  ///< instances from kInstancesFrom objects on, else nodes
   nodes,      ///< a node and a channel per object
@@ -42,6 +44,9 @@ struct WriteOptions {
   /// node. Some 80 bytes a node and 2 an object less; tools that rewrite buffers lose the table (and the
   /// names with it).
   bool id_table = false;
+  /// When given, complete files go here instead of to their places: who puts several there together, or none
+  /// of them, does so with commit_all().
+  std::vector<OutputFile>* later = nullptr;
 
   WriteOptions() = default;
   WriteOptions(Layout l, VisibilityEncoding v, unsigned t = 1) : layout(l), visibility(v), threads(t) {}

@@ -147,21 +147,31 @@ Result<std::uint64_t> put_glb(const FileContent& content, const std::string& pat
   return json_padded;
 }
 
-Result<WriteReport> write_glb(const FileContent& content, const std::string& path) {
+/// Closed files: to their places, or to who does that later.
+Result<void> place(std::vector<OutputFile> files, std::vector<OutputFile>* later) {
+  if (later == nullptr) return commit_all(files);
+  for (OutputFile& file : files) later->push_back(std::move(file));
+  return {};
+}
+
+Result<WriteReport> write_glb(const FileContent& content, const std::string& path,
+                              std::vector<OutputFile>* later) {
   Result<OutputFile> file = OutputFile::open(path);
   if (!file) return forward_error(file);
   const Result<std::uint64_t> json_bytes = put_glb(content, path, *file);
   if (!json_bytes) return tl::unexpected<Error>(json_bytes.error());
   if (Result<void> closed = file->close(); !closed) return forward_error(closed);
-  if (Result<void> placed = file->commit(); !placed) return forward_error(placed);
+  std::vector<OutputFile> files;
+  files.push_back(std::move(*file));
+  if (Result<void> placed = place(std::move(files), later); !placed) return forward_error(placed);
   WriteReport report = content.report();
   report.json_bytes = *json_bytes;
   report.bytes = glb_bytes(*json_bytes, content.buffer_bytes());
   return report;
 }
 
-Result<WriteReport> write_gltf(const FileContent& content, const std::string& path,
-                               const std::string& binary) {
+Result<WriteReport> write_gltf(const FileContent& content, const std::string& path, const std::string& binary,
+                               std::vector<OutputFile>* later) {
   Result<OutputFile> json_file = OutputFile::open(path);
   if (!json_file) return forward_error(json_file);
   std::optional<OutputFile> binary_file;
@@ -183,14 +193,13 @@ Result<WriteReport> write_gltf(const FileContent& content, const std::string& pa
 
   // Both are complete before either is put in its place.
   if (Result<void> closed = json_file->close(); !closed) return forward_error(closed);
+  std::vector<OutputFile> files;
   if (binary_file) {
     if (Result<void> closed = binary_file->close(); !closed) return forward_error(closed);
-    if (Result<void> placed = binary_file->commit(); !placed) return forward_error(placed);
+    files.push_back(std::move(*binary_file));
   }
-  if (Result<void> placed = json_file->commit(); !placed) {
-    if (binary_file) placed.error().what += "; " + binary + " is already the new one";
-    return forward_error(placed);
-  }
+  files.push_back(std::move(*json_file));
+  if (Result<void> placed = place(std::move(files), later); !placed) return forward_error(placed);
   WriteReport report = content.report();
   report.json_bytes = sink.total();
   report.bytes = sink.total() + content.buffer_bytes();
@@ -204,9 +213,9 @@ Result<void> check_glb_buffer(const std::string& path, std::uint64_t bytes) {
 }
 
 Result<WriteReport> write_content(const FileContent& content, FileForm form, const std::string& path,
-                                  const std::string& binary) {
+                                  const std::string& binary, std::vector<OutputFile>* later) {
   const BlockSigpipe no_signal;
-  return form == FileForm::glb ? write_glb(content, path) : write_gltf(content, path, binary);
+  return form == FileForm::glb ? write_glb(content, path, later) : write_gltf(content, path, binary, later);
 }
 
 Result<WriteReport> predict_content(const FileContent& content, FileForm form, const std::string& path,

@@ -34,9 +34,10 @@ enum class FileForm : std::uint8_t { glb, gltf };
 /// Whether a buffer of this size fits into a .glb at all.
 [[nodiscard]] Result<void> check_glb_buffer(const std::string& path, std::uint64_t bytes);
 
-/// `binary` is used by .gltf only.
+/// `binary` is used by .gltf only. `later`: as in WriteOptions.
 [[nodiscard]] Result<WriteReport> write_content(const FileContent& content, FileForm form,
-                                                const std::string& path, const std::string& binary);
+                                                const std::string& path, const std::string& binary,
+                                                std::vector<OutputFile>* later);
 /// The size that write_content would produce.
 [[nodiscard]] Result<WriteReport> predict_content(const FileContent& content, FileForm form,
                                                   const std::string& path, const std::string& binary);

@@ -86,6 +86,18 @@ Result<void> OutputFile::commit() {
   return {};
 }
 
+Result<void> commit_all(std::vector<OutputFile>& files) {
+  std::string placed;
+  for (OutputFile& file : files) {
+    if (Result<void> done = file.commit(); !done) {
+      if (!placed.empty()) done.error().what += "; " + placed + " is already the new one";
+      return done;
+    }
+    placed += (placed.empty() ? "" : ", ") + file.path();
+  }
+  return {};
+}
+
 BlockSigpipe::BlockSigpipe() {
   sigset_t pending, pipe;
   sigemptyset(&pipe);

@@ -3,6 +3,7 @@
 
 #include <csignal>
 #include <string>
+#include <vector>
 
 #include "scene/result.h"
 
@@ -25,6 +26,8 @@ class OutputFile {
   [[nodiscard]] Result<void> close();
   /// Puts the closed file in its place.
   [[nodiscard]] Result<void> commit();
+  /// As the caller knows it.
+  [[nodiscard]] const std::string& path() const { return shown_; }
   /// "town.glb: No space left on device"
   [[nodiscard]] tl::unexpected<Error> error(int code) const;
 
@@ -38,6 +41,9 @@ class OutputFile {
   int descriptor_ = -1;
   bool owns_descriptor_ = true;
 };
+
+/// Puts closed files in their places, in this order. When one cannot be, the error says which already are.
+[[nodiscard]] Result<void> commit_all(std::vector<OutputFile>& files);
 
 /// While it lives, writing to a closed pipe gives EPIPE in this thread instead of ending the process.
 class BlockSigpipe {

@@ -199,6 +199,34 @@ TEST_CASE("a full disk is an error and leaves nothing behind") {
   }
 }
 
+TEST_CASE("files and their report are written all or none") {
+  const TemporaryFolder folder;
+  const ProcessOptions here{.folder = folder.path()};
+  REQUIRE(run(SCENEGEN_PROGRAM, words("--floors 1 -q -o model.glb"), here).code == 0);
+  write_file(folder.file("plan.csv"), "id,start,finish,objects\n1,2024-03-01,2024-03-03,*\n");
+  const std::vector<std::string> before = folder.entries();
+  for (const char* call : {"", "animate model.glb", "optimize model.glb",
+                           "schedule model.glb plan.csv --save-mapping map.json"}) {
+    for (const char* name : {"out.glb", "out.gltf"}) {
+      const std::string line = std::string(call) + " -o " + name + " --report /dev/full";
+      check_case({line.c_str(), kIo, "/dev/full: cannot be written: No space left on device"},
+                 run(SCENEGEN_PROGRAM, words(line), here));
+      CHECK(folder.entries() == before);
+    }
+    // A pipe without a reader takes no model: its report stays away.
+    ProcessOptions closed = here;
+    closed.stdout_closed_pipe = true;
+    const std::string line = std::string(call) + " -o - --report r.json";
+    check_case({line.c_str(), kIo, "~Broken pipe"}, run(SCENEGEN_PROGRAM, words(line), closed));
+    CHECK(folder.entries() == before);
+    const std::string good = std::string(call) + " -o out.gltf -q --report r.json";
+    REQUIRE(run(SCENEGEN_PROGRAM, words(good), here).code == 0);
+    for (const char* made : {"out.gltf", "out.bin", "r.json", "map.json"})
+      std::filesystem::remove(folder.file(made));
+    CHECK(folder.entries() == before);
+  }
+}
+
 TEST_CASE("a full disk under stdout is an error") {
   ProcessOptions full;
   full.stdout_path = "/dev/full";
