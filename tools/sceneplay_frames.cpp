@@ -1,5 +1,7 @@
 // sceneplay frames FILE -o DIR: plays a file and writes one picture a frame.
 #include <algorithm>
+#include <charconv>
+#include <cstdio>
 #include <deque>
 #include <filesystem>
 #include <future>
@@ -59,12 +61,67 @@ Result<std::vector<double>> moments(const FramesRequest& request, const Options&
   return parse_times(duration_s > 0.0 ? "25%,50%,75%,100%" : "0", duration_s);
 }
 
+std::string digits_of(std::size_t number) {
+  std::string digits = std::to_string(number);
+  digits.insert(0, digits.size() < 5 ? 5 - digits.size() : 0, '0');
+  return digits;
+}
+
 Result<void> make_folder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error || !std::filesystem::is_directory(folder, error))
     return fail(ErrorKind::io, folder, error ? "cannot be made: " + error.message() : "is no folder");
   return check_output_file((std::filesystem::path(folder) / "frame_00000.png").string());
+}
+
+/// The number in 00012, if `digits` is how a frame's number is written.
+std::optional<std::size_t> frame_number(std::string_view digits) {
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (error != std::errc() || end != digits.data() + digits.size() || digits_of(number) != digits)
+    return std::nullopt;
+  return number;
+}
+
+/// Whether a file of this name is a picture as this program writes them, and not one of this run's.
+bool is_stale(const FramesRequest& request, std::size_t frames, const std::filesystem::path& name) {
+  const std::string stem = name.stem().string();
+  const std::size_t line = stem.find('_');
+  if (line == std::string::npos) return false;
+  const auto number = frame_number(std::string_view(stem).substr(line + 1));
+  if (!number) return false;
+  const std::string kind = stem.substr(0, line);
+  const std::string form = name.extension().string();
+  const bool picture = kind == "frame" && (form == ".png" || form == ".jpg" || form == ".bmp");
+  const bool ids = kind == "ids" && form == ".png";
+  const bool depth = kind == "depth" && form == ".pfm";
+  if (!picture && !ids && !depth) return false;
+  const bool made =
+      picture ? form == "." + std::string(extension(request.format)) : (ids ? request.ids : request.depth);
+  return !made || *number >= frames;
+}
+
+/// Pictures of an earlier, longer run would end up in a film that is made of the folder.
+void remove_stale(const FramesRequest& request, std::size_t frames) {
+  std::error_code error;
+  std::vector<std::filesystem::path> stale;
+  for (const auto& entry : std::filesystem::directory_iterator(request.folder, error)) {
+    if (entry.is_regular_file(error) && is_stale(request, frames, entry.path().filename()))
+      stale.push_back(entry.path());
+  }
+  std::size_t removed = 0;
+  for (const std::filesystem::path& path : stale) {
+    if (std::filesystem::remove(path, error)) {
+      ++removed;
+    } else {
+      (void)std::fprintf(stderr, "warning: %s of an earlier run cannot be removed\n",
+                         printable(path.string()).c_str());
+    }
+  }
+  if (removed > 0 && !request.quiet)
+    (void)std::fprintf(stderr, "note: removed %s of an earlier run from %s\n",
+                       counted(removed, "picture").c_str(), printable(request.folder).c_str());
 }
 
 /// Encodes and writes the files of one frame; runs on a thread of its own.
@@ -76,8 +133,7 @@ Result<Encoded> write_frame(const FramesRequest& request, std::size_t number, re
                             const render::View& view) {
   const Stopwatch watch;
   if (request.show_nodes) render::draw_chunk_boxes(frame.chunk_boxes, view, request.drawing.size, frame.rgba);
-  std::string digits = std::to_string(number);
-  digits.insert(0, digits.size() < 5 ? 5 - digits.size() : 0, '0');
+  const std::string digits = digits_of(number);
   Encoded out;
   const auto write = [&](const std::string& name, const std::string& bytes) {
     out.bytes += bytes.size();
@@ -234,8 +290,37 @@ render::RendererOptions renderer_options(const FramesRequest& request) {
   return o;
 }
 
-Result<void> draw(const FramesRequest& request, const Options& options) {
+/// A file in the folder of the pictures, which is yet to be made.
+bool in_new_folder(const std::string& path, const std::string& folder) {
+  std::error_code error;
+  if (std::filesystem::exists(folder, error)) return false;
+  const auto real = [&](const std::filesystem::path& p) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(p, error), error);
+  };
+  return real(path).parent_path() == real(folder);
+}
+
+/// Before the long work.
+Result<void> check_files(const FramesRequest& request) {
   if (auto named = check_trace_name(request.trace); !named) return named;
+  if (auto apart = check_distinct_files({{"--report", request.report}, {"--trace", request.trace}},
+                                        {{"FILE", request.file}, {"--camera-path", request.camera_path}});
+      !apart)
+    return apart;
+  for (const std::string& path : {request.report, request.trace}) {
+    if (path.empty() || path == "-" || in_new_folder(path, request.folder)) continue;
+    if (auto writable = check_output_file(path); !writable) return writable;
+  }
+  return {};
+}
+
+/// An error about what should have told of pictures that are there.
+tl::unexpected<Error> without_pictures_lost(Error error, const FramesRequest& request) {
+  error.what += "; the pictures in " + request.folder + " are complete";
+  return tl::unexpected<Error>(std::move(error));
+}
+
+Result<void> draw(const FramesRequest& request, const Options& options) {
   const Stopwatch watch;
   auto read = gltf::read(request.file, {});
   if (!read) return forward_error(read);
@@ -252,9 +337,7 @@ Result<void> draw(const FramesRequest& request, const Options& options) {
   auto renderer = render::Renderer::create(scene, player, how);
   if (!renderer) return forward_error(renderer);
   if (auto made = make_folder(request.folder); !made) return made;
-  if (!request.trace.empty()) {
-    if (auto writable = check_output_file(request.trace); !writable) return writable;
-  }
+  if (auto writable = check_files(request); !writable) return writable;  // now also those in that folder
   std::size_t warned = 0;
   print_warnings(*renderer, warned, request.quiet);
   const std::uint64_t objects = scene.objects.size();
@@ -265,12 +348,15 @@ Result<void> draw(const FramesRequest& request, const Options& options) {
   if (auto done = filming.run(*times); !done) return done;
   print_warnings(filming.renderer(), warned, request.quiet);  // what came up on the way
   if (auto clean = check_validation(filming.renderer()); !clean) return clean;
+  remove_stale(request, times->size());
   if (!request.trace.empty()) {
-    if (auto written = write_trace(request.trace, filming.trace()); !written) return written;
+    if (auto written = write_trace(request.trace, filming.trace()); !written)
+      return without_pictures_lost(std::move(written.error()), request);
   }
   if (!request.report.empty()) {
     const auto json = report_json(request, filming, load_s, watch.seconds());
-    if (auto written = write_file(request.report, pretty(json)); !written) return written;
+    if (auto written = write_file(request.report, pretty(json)); !written)
+      return without_pictures_lost(std::move(written.error()), request);
   }
   if (request.quiet) return {};
   return write_stdout(request.folder + "  " + human_count(times->size()) +
@@ -284,7 +370,8 @@ void add_options(Options& options, FramesRequest& r) {
   options.positional("FILE", r.file, "a .glb or .gltf file");
   options.group("Output");
   options.add("-o,--output", text_value(r.folder, "DIR"),
-              "folder for frame_00000.png and so on; made when missing");
+              "folder for frame_00000.png and so on; made when missing; pictures of an earlier run "
+              "do not stay");
   options.add("--size",
               size2_value(r.drawing.size, {1, 1}, {limits::kMaxFrameSide, limits::kMaxFrameSide}, "WxH"),
               "size of the pictures in pixels");
@@ -343,7 +430,10 @@ int frames_verb(std::span<const std::string> arguments) {
       return fail(ErrorKind::usage, "--times", "has no place beside --fps and --duration");
     if (options.given("--camera") && options.given("--camera-path"))
       return fail(ErrorKind::usage, "--camera", "has no place beside --camera-path");
-    return request.camera_path.empty() ? Result<void>() : check_camera_path(request.camera_path);
+    if (!request.camera_path.empty()) {
+      if (auto readable = check_camera_path(request.camera_path); !readable) return readable;
+    }
+    return check_files(request);
   };
   return run_verb(options, arguments, {.check = check, .work = [&]() -> Result<int> {
                                          Result<void> drawn = draw(request, options);

@@ -277,3 +277,54 @@ TEST_CASE("a full disk leaves no half a picture") {
   CHECK(result.code == 3);
   CHECK_FALSE(std::filesystem::exists(folder.file("out/frame_00000.png")));
 }
+
+TEST_CASE("frames: pictures of an earlier, longer run do not stay among the new ones") {
+  const TemporaryFolder folder;
+  const std::string out = folder.file("out");
+  const std::string call = "frames " + wall_file(folder) + " -o " + out + " --size 16x9 --fps 10 --duration ";
+  REQUIRE(play(call + "0.5 --ids --depth").code == 0);
+  for (const char* other :
+       {"frame_0.png", "frame_00009.txt", "frame_00009.png.bak", "frame_000009.png", "notes.md"})
+    write_file(out + "/" + other, "mine");
+  const std::string before = read_file(out + "/frame_00005.png");
+  const auto shorter = play(call + "0.2 --ids");
+  CHECK(shorter.code == 0);
+  CHECK(shorter.err == "note: removed 12 pictures of an earlier run from " + out + "\n");
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(out))
+    names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  CHECK(names == std::vector<std::string>{"frame_0.png", "frame_00000.png", "frame_000009.png",
+                                          "frame_00001.png", "frame_00002.png", "frame_00009.png.bak",
+                                          "frame_00009.txt", "ids_00000.png", "ids_00001.png",
+                                          "ids_00002.png", "notes.md"});
+  // Another form leaves none of the old one; a run that fails takes nothing away.
+  REQUIRE(play(call + "0.1 --format bmp --quiet").err.empty());
+  CHECK_FALSE(std::filesystem::exists(out + "/frame_00001.png"));
+  CHECK(std::filesystem::exists(out + "/frame_00001.bmp"));
+  check_error(play(call + "0 --camera nobody"), 2, "");
+  CHECK(std::filesystem::exists(out + "/frame_00001.bmp"));
+}
+
+TEST_CASE(
+    "frames: reports that cannot be written are refused before the work, or said to be all that is missing") {
+  const TemporaryFolder folder;
+  const std::string file = wall_file(folder);
+  const std::string call = "frames " + file + " -o " + folder.file("out") + " --size 16x9 --times 0 ";
+  check_error(play(call + "--report " + folder.file("no/r.json")), 3,
+              "no/r.json: cannot be written: No such file");
+  check_error(play(call + "--trace " + folder.file("no/t.csv")), 3, "no/t.csv: cannot be written");
+  check_error(play(call + "--report " + file), 2, "--report: would overwrite");
+  check_error(play(call + "--report " + folder.file("x.json") + " --trace " + folder.file("x.json")), 2,
+              "--trace: would overwrite");
+  check_error(play(call + "--report " + folder.file("out/deeper/r.json")), 3, "deeper/r.json");
+  CHECK(folder.entries() == std::vector<std::string>{"wall.glb"});
+  REQUIRE(
+      play(call + "--quiet --report " + folder.file("out/r.json") + " --trace " + folder.file("out/t.csv"))
+          .code == 0);
+  CHECK(read_file(folder.file("out/r.json")).starts_with("{"));
+  std::filesystem::remove_all(folder.file("out"));
+  check_error(play(call + "--report /dev/full"), 3,
+              "/dev/full: cannot be written: No space left on device; the pictures in");
+  CHECK(std::filesystem::exists(folder.file("out/frame_00000.png")));
+}
