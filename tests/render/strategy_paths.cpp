@@ -203,7 +203,22 @@ std::vector<Path> strategy_paths(std::size_t frames, std::size_t objects) {
   return out;
 }
 
+namespace {
+
+/// One for all paths: making one takes as long as some frames, and drivers give out a limited number.
+std::shared_ptr<vkr::Device> device_of_all() {
+  static const std::shared_ptr<vkr::Device> device = [] {
+    auto made = share_device(test_options().device);
+    if (!made) FAIL(made.error().str());
+    return std::move(*made);
+  }();
+  return device;
+}
+
+}  // namespace
+
 Run run_path(const Path& path, RendererOptions options) {
+  options.shared_device = device_of_all();
   timeline::Player player(timeline::compile(path.scene));
   options.size = path.frames.front().size;
   Result<Renderer> renderer = Renderer::create(path.scene, player, options);
