@@ -18,9 +18,8 @@ struct DeviceOptions {
 
 /// For tests: memory that is not there.
 struct MemoryFaults {
-  std::uint64_t fail_at = 0;  ///< the so-manyth allocation fails, from 1 on; 0: none
-  std::uint64_t device_bytes =
-      0;  ///< what the device seems to have, counting all that was ever taken; 0: no limit
+  /// What the device seems to have, counting all that was ever taken; 0: no limit.
+  std::uint64_t device_bytes = 0;
 };
 
 struct DeviceInfo {

@@ -2,10 +2,9 @@
 
 #include <cassert>
 #include <chrono>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <deque>
+#include <new>
 #include <optional>
 
 #include "render/camera_block.h"
@@ -28,12 +27,6 @@ double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-[[noreturn]] void abort_lost_device(const std::exception& e, const DeviceInfo& device) {
-  std::fprintf(stderr, "error: the Vulkan device '%s' was lost: %s\n", device.name.c_str(), e.what());
-  std::fflush(stderr);
-  std::_Exit(static_cast<int>(ErrorKind::no_device));
-}
-
 }  // namespace
 
 struct Renderer::State {
@@ -54,6 +47,7 @@ struct Renderer::State {
     std::vector<ChunkBox> chunk_boxes;
   };
   std::deque<Unfinished> unfinished;
+  std::optional<Error> failed;  // then what is half done is good for nothing but being destroyed
 
   void build(const Scene& source, const timeline::Player& player);
   [[nodiscard]] Result<void> check_size(glm::uvec2 size) const;
@@ -77,9 +71,9 @@ struct Renderer::State {
   }
   void predict(FrameReport& report) const;
   void finish(FrameResult& out);
-  /// Runs `body`; what Vulkan throws becomes an error, or the end of the program when the device is lost.
+  /// Runs `body`; what it throws becomes an error, now and in every later call.
   template <class Body>
-  Result<void> guarded(const Body& body) const;
+  Result<void> guarded(const Body& body);
 };
 
 Result<void> Renderer::State::check_size(glm::uvec2 size) const {
@@ -92,19 +86,27 @@ Result<void> Renderer::State::check_size(glm::uvec2 size) const {
 }
 
 template <class Body>
-Result<void> Renderer::State::guarded(const Body& body) const {
+Result<void> Renderer::State::guarded(const Body& body) {
+  if (failed) return tl::unexpected(*failed);
+  const auto failure = [&](std::string what) {
+    failed = Error{ErrorKind::no_device, "device '" + device->info.name + "'", std::move(what)};
+    return tl::unexpected(*failed);
+  };
   try {
     body();
     return {};
   } catch (const vk::DeviceLostError& e) {
-    abort_lost_device(e, device->info);
+    return failure(std::string("was lost: ") + e.what());
   } catch (const LimitError& e) {
-    return fail(ErrorKind::no_device, "device '" + device->info.name + "'", e.what());
+    return failure(e.what());
   } catch (const vk::OutOfDeviceMemoryError& e) {
-    return fail(ErrorKind::no_device, "device '" + device->info.name + "'",
-                std::string(e.what()) + "; smaller pictures, fewer samples or a smaller scene need less");
+    return failure(std::string(e.what()) + "; smaller pictures, fewer samples or a smaller scene need less");
+  } catch (const vk::OutOfHostMemoryError& e) {
+    return failure(std::string(e.what()) + "; a smaller scene needs less");
   } catch (const vk::SystemError& e) {
-    return fail(ErrorKind::no_device, "device '" + device->info.name + "'", e.what());
+    return failure(e.what());
+  } catch (const std::bad_alloc&) {
+    return failure("out of host memory; a smaller scene needs less");
   }
 }
 
@@ -321,7 +323,7 @@ void Renderer::State::finish(FrameResult& out) {
 }
 
 Result<Renderer> Renderer::create(const Scene& scene, const timeline::Player& player,
-                                  const RendererOptions& options) {
+                                  const RendererOptions& options) try {
   if (options.samples != 1 && options.samples != 4)
     return fail(ErrorKind::usage, "--samples", std::to_string(options.samples) + "; 1 or 4");
   if (options.frames_in_flight < 1 || options.frames_in_flight > kMostFramesInFlight)
@@ -341,6 +343,8 @@ Result<Renderer> Renderer::create(const Scene& scene, const timeline::Player& pl
   Result<void> built = state->guarded([&] { state->build(scene, player); });
   if (!built) return forward_error(built);
   return Renderer(std::move(state));
+} catch (const std::bad_alloc&) {
+  return fail(ErrorKind::no_device, "renderer", "out of host memory; a smaller scene needs less");
 }
 
 Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}

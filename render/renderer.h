@@ -95,8 +95,8 @@ struct FrameResult {
   std::vector<ChunkBox> chunk_boxes;  ///< what the octree's chunks were found to be
 };
 
-/// Not for several threads at once. A lost device ends the program with a message (there is nothing sensible
-/// to go on with).
+/// Not for several threads at once. After an error of kind no_device (a lost device, memory that ran out and
+/// without which there is no slower way) every call gives that error again: it can only be destroyed.
 class Renderer {
  public:
   /// Uploads the scene in the state of `player`. Errors: no_device, usage (unknown strategy, device, sample

@@ -13,7 +13,10 @@ CommandCache::CommandCache(const vkr::Device& device, std::uint64_t fail_after)
       fail_after_(fail_after) {}
 
 void CommandCache::retire(Kept& kept) {
-  if (*kept.owner) retired_.push_back({std::move(kept.owner), kept.last_used});
+  if (*kept.owner) {
+    retired_.push_back({});  // may throw: what may be running must not have been moved by then
+    retired_.back() = {std::move(kept.owner), kept.last_used};
+  }
   kept = Kept{};
 }
 

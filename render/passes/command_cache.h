@@ -54,8 +54,8 @@ class CommandCache {
     std::uint32_t chunk = 0;
   };
   struct Retired {
-    vk::raii::CommandBuffer owner;
-    std::uint64_t last_used;
+    vk::raii::CommandBuffer owner{nullptr};
+    std::uint64_t last_used = 0;
   };
   void retire(Kept& kept);
   vk::raii::CommandBuffer take(std::uint64_t completed);

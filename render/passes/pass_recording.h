@@ -41,6 +41,9 @@ class PassRecording {
   void execute(std::span<const vk::CommandBuffer> secondaries, std::uint64_t draws, std::uint64_t triangles);
   /// The pass will have two parts: to be said before anything is executed.
   void in_two_parts() { part_ = vkr::PassPart::first; }
+  /// Takes that back, before the pass has begun.
+  void in_one_part() { part_ = vkr::PassPart::whole; }
+  [[nodiscard]] bool begun() const { return form_ != Form::not_begun || in_second_part(); }
   /// Ends the first part; what is not allowed inside a pass can be recorded now, into
   /// context().frame.commands.
   void end_first_part();

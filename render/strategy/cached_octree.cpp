@@ -1,6 +1,7 @@
 #include "render/strategy/cached_octree.h"
 
 #include <algorithm>
+#include <new>
 
 #include "render/strategy/estimate_load.h"
 #include "render/strategy/octree_choice.h"
@@ -13,13 +14,15 @@ CachedOctree::CachedOctree(const StrategyContext& context) : context_(context), 
   choose_form();
   if (const auto fitting = choose_objects_per_node(context)) {
     objects_per_node_ = *fitting;
-    octree_.emplace(scene_, *fitting,
-                    context.octree_in_slices ? SceneOctree::Build::in_slices : SceneOctree::Build::at_once);
-    if (indirect_form_) {
-      nodes_.emplace(*fitting, context.options.fail_after_buffers);
-    } else {
-      cache_.emplace(context.device, context.options.fail_after_buffers);
-    }
+    (void)unless_out_of_memory([&] {
+      octree_.emplace(scene_, *fitting,
+                      context.octree_in_slices ? SceneOctree::Build::in_slices : SceneOctree::Build::at_once);
+      if (indirect_form_) {
+        nodes_.emplace(*fitting, context.options.fail_after_buffers);
+      } else {
+        cache_.emplace(context.device, context.options.fail_after_buffers);
+      }
+    });
   } else {
     give_up("an octree with kept commands does not fit into " +
             std::to_string(context.options.octree_bytes >> 20) + " MiB (--octree-memory)");
@@ -36,15 +39,19 @@ void CachedOctree::choose_form() {
 
 void CachedOctree::update(const timeline::ChangeSet& changes) {
   changed_ = changes.count();
-  inline_ ? inline_->update(changes) : octree_->update(changes);
+  if (!inline_ && unless_out_of_memory([&] { octree_->update(changes); })) return;
+  inline_->update(changes);
 }
 
 void CachedOctree::note(const timeline::ChangeSet& changes) {
-  inline_ ? inline_->update(changes) : octree_->note(changes);
+  if (!inline_ && unless_out_of_memory([&] { octree_->note(changes); })) return;
+  inline_->update(changes);
 }
 
 bool CachedOctree::catch_up(std::size_t slots) {
-  return inline_ || octree_->catch_up(slots);
+  if (inline_) return true;
+  bool done = true;
+  return !unless_out_of_memory([&] { done = octree_->catch_up(slots); }) || done;
 }
 
 void CachedOctree::plan(const View& view) {
@@ -52,14 +59,17 @@ void CachedOctree::plan(const View& view) {
   const double could_be_recorded = static_cast<double>(chunks_.size()) * recordings();
   changed_share_ = could_be_recorded > 0 ? static_cast<double>(counters_.recorded) / could_be_recorded : 0.0;
   counters_ = {};
-  if (inline_) return plan_inline();
-  const CullPlanes planes = cull_planes(frustum_of(view.clip_from_world), scene_.bounds_m());
+  if (inline_ || !unless_out_of_memory([&] { plan_chunks(); })) plan_inline();
+}
+
+void CachedOctree::plan_chunks() {
+  const CullPlanes planes = cull_planes(frustum_of(view_.clip_from_world), scene_.bounds_m());
   list_blended_in_frustum(scene_, planes, list_);
-  sort_back_to_front(scene_, view, list_.blended);
+  sort_back_to_front(scene_, view_, list_.blended);
   chunks_.clear();
   visits_.clear();
   found_ = {};
-  tree().cull(planes, view.eye_m(), chunks_, found_, &visits_);
+  tree().cull(planes, view_.eye_m(), chunks_, found_, &visits_);
   passes_ = 0;
   counters_.nodes = found_.nodes;
   counters_.tree_nodes = tree().node_count();
@@ -92,18 +102,9 @@ void CachedOctree::foresee(model::FrameFacts& facts) const {
 
 void CachedOctree::draw_solid(PassRecording& pass) {
   if (!inline_) {
-    std::string why;
-    try {
-      ++passes_;
-      return draw_chunks(pass);
-    } catch (const vk::OutOfHostMemoryError& e) {
-      why = e.what();
-    } catch (const vk::OutOfDeviceMemoryError& e) {
-      why = e.what();
-    }
-    // What is kept may still be running: it stays until the end.
-    octree_.reset();
-    give_up("no memory for kept commands (" + why + ")");
+    ++passes_;
+    if (unless_out_of_memory([&] { draw_chunks(pass); }, &pass)) return;
+    pass.in_one_part();
     plan_inline();
   }
   inline_->draw_solid(pass);
@@ -118,6 +119,12 @@ void CachedOctree::resized(glm::uvec2 size) {
   context_.size = size;
   if (cache_) cache_->forget();
   if (inline_) inline_->resized(size);
+}
+
+bool CachedOctree::out_of_memory(const std::exception& error) {
+  return dynamic_cast<const vk::OutOfHostMemoryError*>(&error) != nullptr ||
+         dynamic_cast<const vk::OutOfDeviceMemoryError*>(&error) != nullptr ||
+         dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
 }
 
 void CachedOctree::give_up(const std::string& why) {

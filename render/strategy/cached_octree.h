@@ -1,6 +1,7 @@
 // What strategies that keep the commands of octree chunks have in common.
 #pragma once
 
+#include <exception>
 #include <memory>
 #include <optional>
 #include <span>
@@ -35,7 +36,7 @@ class CachedOctree : public Strategy {
   /// Instead of update(), in a frame that is drawn otherwise: the changes are put off.
   void note(const timeline::ChangeSet& changes);
   /// Does about `slots` slots' worth of what was put off, or of building the tree; true when nothing is left.
-  /// Only then may plan() be called.
+  /// Only then may plan() be called. Also true when memory ran out: see available().
   bool catch_up(std::size_t slots);
   /// False: there was no memory for it, plan() goes on as `inline`.
   [[nodiscard]] bool available() const { return !inline_; }
@@ -55,6 +56,22 @@ class CachedOctree : public Strategy {
   /// Draws the chunks in the frustum, `chunks_`. What needs memory comes first: when it throws for want of
   /// it, the pass must not have begun.
   virtual void draw_chunks(PassRecording& pass) = 0;
+
+  /// Runs `body`. When memory of the host or the device runs out in it, the octree is let go, `inline` takes
+  /// over with a warning, and false comes back; but what has begun of `pass` cannot be taken back, then it
+  /// throws.
+  template <class Body>
+  bool unless_out_of_memory(const Body& body, const PassRecording* pass = nullptr) {
+    try {
+      body();
+      return true;
+    } catch (const std::exception& e) {
+      if (!out_of_memory(e) || (pass != nullptr && pass->begun())) throw;
+      octree_.reset();  // what is kept may still be running: it stays until the end
+      give_up(std::string("no memory for kept commands (") + e.what() + ")");
+      return false;
+    }
+  }
 
   /// Before a pass begins: makes the commands of these chunks ready. With `predicates` they can be drawn
   /// under them.
@@ -77,10 +94,12 @@ class CachedOctree : public Strategy {
   std::vector<OctreeVisit> visits_;    ///< nodes they are in
 
  private:
+  [[nodiscard]] static bool out_of_memory(const std::exception& error);
   void choose_form();
   /// How often a chunk was recorded that changed: secondaries once a pass, indirect draws once a frame.
   [[nodiscard]] double recordings() const { return indirect_form_ || passes_ < 2 ? 1.0 : passes_; }
   void give_up(const std::string& why);
+  void plan_chunks();
   void plan_inline();
   void keep_secondaries(PassRecording& pass, std::span<const std::uint32_t> chunks, vk::Buffer predicates);
   void execute(PassRecording& pass, std::span<const std::uint32_t> chunks, vk::CommandBuffer last);

@@ -14,8 +14,11 @@ QueryOctree::QueryOctree(const StrategyContext& context) : CachedOctree(context)
         "the device has no conditional rendering, which --node-form secondaries needs; drawn as with "
         "--late-visibility: what comes into view may appear some frames too late");
   }
-  for (std::unique_ptr<Occlusion>& of_pass : occlusion_)
-    of_pass = std::make_unique<Occlusion>(context.device, predicates());
+  if (!available()) return;
+  (void)unless_out_of_memory([&] {
+    for (std::unique_ptr<Occlusion>& of_pass : occlusion_)
+      of_pass = std::make_unique<Occlusion>(context.device, predicates());
+  });
 }
 
 Predicates QueryOctree::predicates() const {

@@ -33,6 +33,18 @@ void Frame::mark(const vk::raii::CommandBuffer& where, GpuStage stage) {
   marks[marked++] = stage;
 }
 
+namespace {
+
+/// Before what may be running is destroyed because waiting for it failed. A device that is lost runs nothing.
+void wait_idle(const Device& device) {
+  try {
+    device.device.waitIdle();
+  } catch (const std::exception&) {
+  }
+}
+
+}  // namespace
+
 FrameRing::FrameRing(const Device& device, std::uint32_t frames, bool stages)
     : device_(device), frames_(frames) {
   for (Frame& f : frames_) {
@@ -50,7 +62,8 @@ FrameRing::FrameRing(const Device& device, std::uint32_t frames, bool stages)
 FrameRing::~FrameRing() {
   try {
     wait_all();
-  } catch (const std::exception&) {  // a lost device: nothing is running any more
+  } catch (const std::exception&) {
+    wait_idle(device_);
   }
 }
 
@@ -124,9 +137,14 @@ void run_once(const Device& device, const std::function<void(const vk::raii::Com
   commands.end();
   const vk::raii::Fence fence(device.device, vk::FenceCreateInfo{});
   device.queue.submit(vk::SubmitInfo({}, {}, *commands), *fence);
-  if (device.device.waitForFences(*fence, VK_TRUE, std::numeric_limits<std::uint64_t>::max()) !=
-      vk::Result::eSuccess)
-    throw vk::DeviceLostError("waiting for an upload");
+  try {
+    if (device.device.waitForFences(*fence, VK_TRUE, std::numeric_limits<std::uint64_t>::max()) !=
+        vk::Result::eSuccess)
+      throw vk::DeviceLostError("waiting for an upload");
+  } catch (const std::exception&) {
+    wait_idle(device);
+    throw;
+  }
 }
 
 }  // namespace scenegen::render::vkr

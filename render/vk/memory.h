@@ -101,7 +101,6 @@ class Memory {
 
   const Device& device_;
   MemoryFaults faults_;
-  std::uint64_t allocations_ = 0;
   std::uint64_t device_bytes_ = 0;  // for faults_ only
   std::uint64_t spilled_bytes_ = 0;
   std::list<Allocation::Block> blocks_;

@@ -410,54 +410,6 @@ TEST_CASE("renderers share a device and take turns; without readback there are n
   for (const std::string& message : renderers[0].take_validation_messages()) FAIL_CHECK(message);
 }
 
-TEST_CASE("memory that runs out at any allocation is a clear error, or a slower way is taken") {
-  const Scene scene = wall_scene();
-  RendererOptions options = test_options();
-  options.shadows = true;
-  auto device = share_device(options.device);
-  REQUIRE(device);
-  options.shared_device = *device;
-  const View view = look({0, 2, 9}, {0, 1, 0}, options.size);
-  for (const char* strategy : {"inline", "octree", "queries-all"}) {
-    options.strategy = strategy;
-    std::uint64_t n = 1;
-    std::size_t at_creation = 0, while_drawing = 0;
-    for (bool failed = true; failed; ++n) {
-      REQUIRE(n < 200);
-      INFO(strategy << ", allocation " << n);
-      options.memory_faults.fail_at = n;
-      timeline::Player player(timeline::compile(scene));
-      auto renderer = Renderer::create(scene, player, options);
-      std::optional<Error> error;
-      if (!renderer) {
-        error = renderer.error();
-        ++at_creation;
-      }
-      FrameResult frame;
-      for (int i = 0; i < 4 && !error; ++i) {
-        if (auto done = renderer->submit(player.seek(i), player, view); !done) error = done.error();
-        if (error) {
-          ++while_drawing;
-        } else {
-          REQUIRE(renderer->finish(frame));
-        }
-      }
-      // A strategy that goes on as inline says so.
-      failed = error.has_value() || !renderer->warnings().empty();
-      if (renderer) {  // the device is shared: these are of failed creations too
-        for (const std::string& message : renderer->take_validation_messages()) FAIL_CHECK(message);
-      }
-      if (error) {
-        CHECK(error->kind == ErrorKind::no_device);
-        CHECK(error->str().find("fault injected") != std::string::npos);
-        CHECK(error->str().find('\n') == std::string::npos);
-      }
-    }
-    CHECK(at_creation > 8);
-    CHECK(while_drawing >= 3);  // staging memory, pictures to read
-  }
-}
-
 TEST_CASE("a scene that does not fit device memory lies in the host's, and looks the same") {
   Scene scene = wall_scene();
   Geometry large = box_geometry();  // boxes in boxes, no vertex twice: about a megabyte
