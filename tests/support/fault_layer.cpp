@@ -18,21 +18,24 @@ namespace {
 using scenegen::test::FaultControl;
 
 // Every function of a device that may fail and that the renderer uses, or is likely to.
-#define SCENEGEN_CALLS(X)                                                                            \
-  X(vkAllocateMemory)                                                                                \
-  X(vkMapMemory)                                                                                     \
-  X(vkBindBufferMemory)                                                                              \
-  X(vkBindImageMemory) X(vkCreateBuffer) X(vkCreateBufferView) X(vkCreateImage) X(vkCreateImageView) \
-      X(vkCreateFence) X(vkCreateSemaphore) X(vkCreateEvent) X(vkCreateQueryPool) X(vkCreateSampler) \
-          X(vkCreateShaderModule) X(vkCreatePipelineCache) X(vkCreateGraphicsPipelines)              \
-              X(vkCreateComputePipelines) X(vkCreatePipelineLayout) X(vkCreateDescriptorSetLayout)   \
-                  X(vkCreateDescriptorPool) X(vkAllocateDescriptorSets) X(vkCreateFramebuffer)       \
-                      X(vkCreateRenderPass) X(vkCreateRenderPass2) X(vkCreateCommandPool)            \
-                          X(vkAllocateCommandBuffers) X(vkResetCommandPool) X(vkBeginCommandBuffer)  \
-                              X(vkEndCommandBuffer) X(vkResetCommandBuffer) X(vkQueueSubmit)         \
-                                  X(vkQueueSubmit2) X(vkQueueWaitIdle) X(vkDeviceWaitIdle)           \
-                                      X(vkWaitForFences) X(vkResetFences) X(vkGetFenceStatus)        \
-                                          X(vkGetQueryPoolResults)
+// clang-format off
+#define SCENEGEN_CALLS(X)                                                                              \
+  X(vkAllocateMemory) X(vkMapMemory) X(vkBindBufferMemory) X(vkBindImageMemory) X(vkCreateBuffer)      \
+  X(vkCreateBufferView) X(vkCreateImage) X(vkCreateImageView) X(vkCreateFence) X(vkCreateSemaphore)    \
+  X(vkCreateEvent) X(vkCreateQueryPool) X(vkCreateSampler) X(vkCreateShaderModule)                     \
+  X(vkCreatePipelineCache) X(vkCreateGraphicsPipelines) X(vkCreateComputePipelines)                    \
+  X(vkCreatePipelineLayout) X(vkCreateDescriptorSetLayout) X(vkCreateDescriptorPool)                   \
+  X(vkAllocateDescriptorSets) X(vkCreateFramebuffer) X(vkCreateRenderPass) X(vkCreateRenderPass2)      \
+  X(vkCreateCommandPool) X(vkAllocateCommandBuffers) X(vkResetCommandPool) X(vkBeginCommandBuffer)     \
+  X(vkEndCommandBuffer) X(vkResetCommandBuffer) X(vkQueueSubmit) X(vkQueueSubmit2) X(vkQueueWaitIdle)  \
+  X(vkDeviceWaitIdle) X(vkWaitForFences) X(vkResetFences) X(vkGetFenceStatus) X(vkGetQueryPoolResults)
+
+// Of an instance, what is called below.
+#define SCENEGEN_INSTANCE_CALLS(X)                                       \
+  X(vkDestroyInstance) X(vkCreateDevice) X(vkEnumeratePhysicalDevices)   \
+  X(vkEnumerateDeviceExtensionProperties) X(vkGetPhysicalDeviceFeatures2) \
+  X(vkGetPhysicalDeviceProperties2) X(vkGetPhysicalDeviceQueueFamilyProperties)
+// clang-format on
 
 enum CallIndex : std::size_t {
 #define SCENEGEN_INDEX(name) k_##name,
@@ -40,14 +43,6 @@ enum CallIndex : std::size_t {
 #undef SCENEGEN_INDEX
       kCalls
 };
-
-// Of an instance, what is called below.
-#define SCENEGEN_INSTANCE_CALLS(X)                                                                          \
-  X(vkDestroyInstance)                                                                                      \
-  X(vkCreateDevice)                                                                                         \
-  X(vkEnumeratePhysicalDevices)                                                                             \
-  X(vkEnumerateDeviceExtensionProperties) X(vkGetPhysicalDeviceFeatures2) X(vkGetPhysicalDeviceProperties2) \
-      X(vkGetPhysicalDeviceQueueFamilyProperties)
 
 struct InstanceTable {
   PFN_vkGetInstanceProcAddr next = nullptr;
