@@ -254,6 +254,10 @@ void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline:
   }
   if (options.outputs.ids || options.outputs.depth) record_ids(frame, barriers, report);
   report.record_ms = ms_since(start);
+  if (options.predictions) {  // before the device begins: it must not work meanwhile
+    const StageTimer timer(report.predict_ms);
+    predict(report);
+  }
 
   start = Clock::now();
   ring->submit(frame);
@@ -268,7 +272,6 @@ void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline:
     report.verdict = choice->verdict;
     report.choose_ms = choice->choose_s * 1e3;
   }
-  if (options.predictions) predict(report);
   unfinished.push_back(
       {&frame, report, options.chunk_boxes ? strategy->chunk_boxes() : std::vector<ChunkBox>{}});
 }

@@ -81,6 +81,7 @@ struct FrameReport : PlanCounters {
   std::string_view strategy_used;  ///< of `adaptive`: what it took
   model::Verdict verdict;          ///< and why; model::in_words()
   double choose_ms = 0;            ///< what choosing took, part of plan_ms
+  double predict_ms = 0;           ///< what predicting took, in no stage
   /// By model::Method, with RendererOptions::predictions; not corrected.
   std::array<model::Prediction, model::kMethods> predicted;
   model::FrameFacts facts;  ///< what they were made from

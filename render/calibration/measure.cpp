@@ -33,8 +33,8 @@ Stages medians(const std::vector<Stages>& all) {
     std::transform(all.begin(), all.end(), values.begin(), [&](const Stages& s) { return s.*stage; });
     return median(std::move(values));
   };
-  return {of(&Stages::update_s), of(&Stages::plan_s), of(&Stages::record_s), of(&Stages::device_s),
-          of(&Stages::readback_s)};
+  return {of(&Stages::update_s), of(&Stages::plan_s),     of(&Stages::record_s),
+          of(&Stages::device_s), of(&Stages::readback_s), of(&Stages::gpu_s)};
 }
 
 class Measuring {
@@ -93,17 +93,18 @@ class Measuring {
     const FrameReport& r = result_.report;
     if (keep != nullptr)
       keep->push_back({r.update_ms * 1e-3, r.plan_ms * 1e-3, (r.record_ms + r.submit_ms) * 1e-3,
-                       r.wait_ms * 1e-3, r.readback_ms * 1e-3});
+                       r.wait_ms * 1e-3, r.readback_ms * 1e-3, r.gpu_ms < 0.0 ? -1.0 : r.gpu_ms * 1e-3});
     if (report != nullptr) *report = r;
     return {};
   }
 
-  /// Time from frame to frame with two in flight.
+  /// Time from frame to frame with two in flight, from the end of the first on.
   Result<void> pipelined(double time_s, std::vector<double>& periods) {
     constexpr int kFrames = 5;
     if (Result<void> done = renderer_.submit(player_.seek(time_s), player_, test_.view); !done) return done;
-    const auto start = Clock::now();
-    for (int i = 0; i < kFrames; ++i) {
+    Clock::time_point start;
+    for (int i = 0; i <= kFrames; ++i) {
+      if (i == 1) start = Clock::now();
       if (Result<void> done = renderer_.submit(player_.seek(time_s), player_, test_.view); !done) return done;
       if (Result<void> done = renderer_.finish(result_); !done) return done;
     }

@@ -18,6 +18,7 @@ struct Stages {
   double record_s = 0;  ///< and submitting
   double device_s = 0;  ///< what the processor waits for one frame, nothing else in flight
   double readback_s = 0;
+  double gpu_s = -1;  ///< between the frame's timestamps; -1: none
   [[nodiscard]] double cpu_s() const { return update_s + plan_s + record_s + readback_s; }
 };
 

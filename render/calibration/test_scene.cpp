@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "render/image_file.h"
+#include "scene/random.h"
 
 namespace scenegen::render::calibration {
 namespace {
@@ -56,6 +57,17 @@ Geometry sphere_geometry(std::uint32_t slices, std::uint32_t stacks) {
       if (j + 1 < stacks) g.indices.insert(g.indices.end(), {at(i, j), at(i + 1, j + 1), at(i, j + 1)});
       if (j > 0) g.indices.insert(g.indices.end(), {at(i, j), at(i + 1, j), at(i + 1, j + 1)});
     }
+  }
+  return g;
+}
+
+/// Every triangle has vertices of its own, which differ a little (else loading would share them).
+Geometry without_indices(const Geometry& from) {
+  Geometry g;
+  for (const std::uint32_t i : from.indices) {
+    g.positions_m.push_back(from.positions_m[i]);
+    g.normals.push_back(from.normals[i]);
+    g.texcoords[0].emplace_back(static_cast<float>(g.texcoords[0].size()) * 1e-6F, 0.0F);
   }
   return g;
 }
@@ -135,7 +147,7 @@ class Builder {
     add_boxes();
     add_meshes();
     add_layers();
-    add_large_boxes();
+    add_piles();
     finish();
     return std::move(out_);
   }
@@ -250,56 +262,68 @@ class Builder {
       }
       const std::uint32_t n =
           std::clamp(sizes_.mesh_vertices / each, 4U, sizes_.boxes[sizes_.boxes.size() / 2]);
-      // Each of the triangles that face the viewer covers about a fragment.
-      const float side = vertices <= 3 ? 0.7F : std::sqrt(static_cast<float>(each) / 6.0F);
+      // Each of the triangles that face the viewer covers about a quarter of a fragment.
+      const float side = vertices <= 3 ? 0.7F : 0.5F * std::sqrt(static_cast<float>(each) / 6.0F);
       const double share = vertices <= 3 ? 0.0
                                          : n * glm::quarter_pi<double>() * side * side /
                                                (static_cast<double>(size_.x) * size_.y);
       if (share > 0.5) continue;  // too small a picture for these
+      if (vertices <= 3) {
+        show(group([&] { small(mesh.plain, 0, n, n, 0.0F, side); }),
+             begin({Trial::unshared_meshes, n, each, 1, share}));
+        continue;
+      }
+      const Pair unshared = add_geometry(without_indices(out_.scene.geometries.back()));
+      show(group([&] { small(unshared.plain, 0, n, n, 0.0F, side); }),
+           begin({Trial::unshared_meshes, n, each, 1, share}));
+      if (vertices != sizes_.vertices.back()) continue;
       show(group([&] { small(mesh.plain, 0, n, n, 0.0F, side); }), begin({Trial::meshes, n, each, 1, share}));
-      if (vertices == sizes_.vertices.back())
-        show(group([&] { small(mesh.textured, 0, n, n, 0.0F, side); }),
-             begin({Trial::textured_meshes, n, each, 1, share}));
+      show(group([&] { small(unshared.textured, 0, n, n, 0.0F, side); }),
+           begin({Trial::textured_meshes, n, each, 1, share}));
     }
   }
 
   void add_layers() {
     for (const double share : sizes_.shares) {
-      layers(Trial::layers, quads_.plain, share, 1.0F);
-      layers(Trial::textured_layers, quads_.textured, share, 1.0F);
+      layers(Trial::layers, quads_.plain, share);
+      layers(Trial::textured_layers, quads_.textured, share);
     }
-    layers(Trial::hidden_layers, quads_.plain, 1.0, -1.0F);
   }
 
-  /// One layer, and several: `nearer` 1: each in front of the one before; -1: behind.
-  void layers(Trial trial, MeshId mesh, double share, float nearer) {
+  /// One layer, and several, each in front of the one before.
+  void layers(Trial trial, MeshId mesh, double share) {
     const std::size_t first = group([&] { quad(mesh, share, kWallM - 20.0F); });
     show(first, begin({trial, 1, 6, 1, share}));
-    const std::uint32_t more = begin({trial, sizes_.layers, 6, sizes_.layers, share});
+    const std::uint32_t more = begin({trial, sizes_.layers, 6, static_cast<double>(sizes_.layers), share});
     show(first, more);
     show(group([&] {
            for (std::uint32_t i = 1; i < sizes_.layers; ++i)
-             quad(mesh, share, kWallM - 20.0F - nearer * static_cast<float>(i));
+             quad(mesh, share, kWallM - 20.0F - static_cast<float>(i));
          }),
          more);
   }
 
-  /// Boxes that meet at their edges; their fronts cover the share.
-  void add_large_boxes() {
-    for (std::size_t i = 0; i + 1 < sizes_.boxes.size(); ++i) {
+  /// Boxes of one size, anywhere, as scenes have them: what is in front comes before or after what is behind.
+  void add_piles() {
+    const Random random(1, "piles");
+    std::uint64_t number = 0;
+    const float aspect = static_cast<float>(size_.x) / static_cast<float>(size_.y);
+    const float h = 0.8F * height_m(kDistanceM);
+    for (std::size_t i = sizes_.boxes.size() - 2; i < sizes_.boxes.size(); ++i) {
       const std::uint32_t n = sizes_.boxes[i];
-      constexpr double kShare = 0.81 * 0.5;
-      const float aspect = static_cast<float>(size_.x) / static_cast<float>(size_.y);
-      const float h = 0.9F * height_m(kDistanceM);
-      const float side = std::sqrt(0.5F * h * h * aspect / static_cast<float>(n));
-      const std::uint32_t step = begin({Trial::large_boxes, n, 36, 1, kShare});
-      show(group([&] {
-             for (std::uint32_t k = 0; k < n; ++k) {
-               const glm::vec3 at = place(k, n, kDistanceM);
-               object(boxes_.plain, at - glm::vec3(0, 0, 0.5F * side), glm::vec3(side));
-             }
-           }),
-           step);
+      for (const double layers : sizes_.piles) {
+        const float side = std::sqrt(static_cast<float>(layers) * h * h * aspect / static_cast<float>(n));
+        const std::uint32_t step = begin({Trial::piles, n, 36, layers, 0.64});
+        show(group([&] {
+               for (std::uint32_t k = 0; k < n; ++k) {
+                 const auto around = [&] { return random.unit(number++) - 0.5F; };
+                 const float x = around(), y = around(), z = around();
+                 object(boxes_.plain, {x * h * aspect, y * h, -kDistanceM + 0.4F * kDistanceM * z},
+                        glm::vec3(side));
+               }
+             }),
+             step);
+      }
     }
   }
 
@@ -347,6 +371,7 @@ TestSizes test_sizes(bool software_device, bool quick) {
                        : std::vector<std::uint32_t>{3, 150, 600, 3000, 12'000, 60'000, 120'000};
     s.mesh_vertices = 2'000'000;
   }
+  s.piles = {0.5, 2, 8};
   s.shares =
       quick ? std::vector<double>{1.0, 0.25} : std::vector<double>{1.0, 0.75, 0.5, 0.25, 0.125, 0.0625};
   return s;

@@ -13,16 +13,16 @@
 namespace scenegen::render::calibration {
 
 enum class Trial : std::uint8_t {
-  empty,           ///< nothing
-  boxes,           ///< `draws` boxes of less than a pixel, all in view (D: boxes in growing number)
-  textured_boxes,  ///< the same with textures: base colour and normals
-  meshes,  ///< spheres of `vertices` each, a fragment for each triangle seen (D: growing batchSize); a
-           ///< triangle
-  textured_meshes,  ///< the same with textures
+  empty,            ///< nothing
+  boxes,            ///< `draws` boxes of less than a pixel, all in view (D: boxes in growing number)
+  textured_boxes,   ///< the same with textures: base colour and normals
+  unshared_meshes,  ///< a triangle; spheres of `vertices` each whose triangles share none (D: growing
+                    ///< batchSize)
+  meshes,           ///< the same, sharing
+  textured_meshes,  ///< `unshared_meshes` with textures
   layers,           ///< `layers` quads over `share` of the picture, every one in front of those before
   textured_layers,  ///< the same with textures
-  hidden_layers,    ///< the same back to front: all but the first fail the depth test
-  large_boxes,      ///< `draws` boxes side by side, which cover `share` of the picture
+  piles,            ///< `draws` boxes anywhere over `share` of the picture, `layers` deep, in any order
   hidden_boxes,     ///< a wall over the whole picture with `draws` boxes behind it
   halved_boxes,     ///< `draws` boxes, half of them beside the picture
 };
@@ -32,7 +32,7 @@ struct Step {
   Trial trial = Trial::empty;
   std::uint32_t draws = 0;     ///< objects
   std::uint32_t vertices = 0;  ///< of each, drawn
-  std::uint32_t layers = 0;
+  double layers = 0;
   double share = 0;  ///< of the picture that is covered
   double time_s = 0;
 };
@@ -51,6 +51,7 @@ struct TestSizes {
   std::uint32_t mesh_vertices = 0;      ///< of all meshes of a step together
   std::vector<double> shares;           ///< of the picture, as D: 1, 3/4, 1/2, 1/4, 1/8, 1/16
   std::uint32_t layers = 4;
+  std::vector<double> piles;  ///< how deep, ascending
 };
 
 /// What 2.5.4 and 4.2 ask for, for pictures of `size`. `quick`: fewer sizes.

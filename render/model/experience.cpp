@@ -11,6 +11,7 @@ namespace {
 Load scaled(Load load, double by) {
   load.draws *= by;
   load.vertices *= by;
+  load.triangles *= by;
   load.fragments *= by;
   return load;
 }
@@ -82,8 +83,12 @@ void Experience::fill_queries(FrameFacts& f) const {
     f.asked = asked_ * f.chunks;
     f.asked_fragments = asked_fragments_ * f.in_chunks.fragments;
     f.chunks_hidden = chunks_hidden_ * f.chunks;
-    f.hidden = {draws_hidden_ * f.in_chunks.draws, vertices_hidden_ * f.in_chunks.vertices,
-                fragments_hidden_ * f.in_chunks.fragments, f.in_chunks.textured_share, 0};
+    f.hidden = {draws_hidden_ * f.in_chunks.draws,
+                vertices_hidden_ * f.in_chunks.vertices,
+                fragments_hidden_ * f.in_chunks.fragments,
+                f.in_chunks.textured_share,
+                0,
+                vertices_hidden_ * f.in_chunks.triangles};
     return;
   }
   // Never asked: of k layers over the picture, all but the first two or so could be hidden.

@@ -15,6 +15,7 @@ struct Taken {
   double executed = 0;    // kept command buffers or node commands, hidden ones included
   double listed = 0;      // slots of chunks that are brought in order
   double hidden = 0;      // chunks drawn in a second part of the pass
+  double found = 0;       // queries that find nothing
   double asked_area = 0;  // fragments of the boxes asked about
 };
 
@@ -32,6 +33,7 @@ double command_s(const Load& load, const UnitCosts& c) {
 Load without(Load load, const Load& part) {
   load.draws = std::max(0.0, load.draws - part.draws);
   load.vertices = std::max(0.0, load.vertices - part.vertices);
+  load.triangles = std::max(0.0, load.triangles - part.triangles);
   load.fragments = std::max(0.0, load.fragments - part.fragments);
   return load;
 }
@@ -40,6 +42,7 @@ Load together(const Load& a, const Load& b) {
   Load sum = a;
   sum.draws += b.draws;
   sum.vertices += b.vertices;
+  sum.triangles += b.triangles;
   sum.fragments += b.fragments;
   if (sum.draws > 0.0)
     sum.textured_share = (a.draws * a.textured_share + b.draws * b.textured_share) / sum.draws;
@@ -53,6 +56,7 @@ void take_queries(Taken& t, const FrameFacts& f, double asked, double chunks_hid
                   bool exact) {
   t.way.queries = true;
   t.counts.queried_nodes = asked;
+  t.found = chunks_hidden;
   t.drawn = without(f.in_chunks, part);
   if (exact) {
     t.hidden = chunks_hidden;
@@ -83,6 +87,7 @@ Taken take(Method method, const FrameFacts& f, const PredictionOptions& options)
       t.way.queries = true;
       t.counts.queried_nodes = f.in_frustum.draws;
       t.asked_area = f.in_frustum.fragments;
+      t.found = f.slots_hidden.draws;
       break;
     case Method::octree_record:
       t.way.octree = true;
@@ -130,9 +135,13 @@ TimeUnits units_of(const UnitCosts& c, const FrameFacts& f, const PredictionOpti
   return t;
 }
 
-/// Executing kept command buffers or node commands, beyond the draws in them.
+/// T_state of kept command buffers: the device prepares one while it works on the draws before. Those of the
+/// second part have nothing to be beside.
+double nodes_state_s(const Taken& t, const UnitCosts& c, bool indirect) {
+  return indirect ? 0.0 : (t.executed - t.hidden) * c.secondary_device_s;
+}
 double nodes_device_s(const Taken& t, const UnitCosts& c, bool indirect) {
-  if (!indirect) return t.executed * c.secondary_device_s + t.skipped * c.skipped_draw_s;
+  if (!indirect) return t.hidden * c.secondary_device_s + t.skipped * c.skipped_draw_s;
   // Its draws are commands of another kind; hidden ones are none at all.
   return t.executed * c.node_command_device_s + t.drawn.draws * (c.indirect_draw_s - command_s(t.drawn, c));
 }
@@ -163,7 +172,7 @@ Shaded shaded_fragments(const Load& load, double screen_pixels) {
 double outlines(const Load& load) {
   if (load.draws <= 0.0 || load.fragments <= 0.0) return 0.0;
   const double each = load.fragments / load.draws;
-  const double facing = std::max(1.0, load.vertices / load.draws / 6.0);  // half of the triangles
+  const double facing = std::max(1.0, 0.5 * load.triangles / load.draws);
   const double seen = facing * (1.0 - std::exp(-each / facing));
   return load.draws * std::sqrt(seen * each);
 }
@@ -175,7 +184,7 @@ GpuStages device_stages(const Load& load, double screen_pixels, const UnitCosts&
   const double per_draw = load.vertices / load.draws;
   const std::array vertices{
       Work{load.draws, mixed(c.draw_s, load.textured_share, &Curve::line_at, per_draw)}};
-  out.vertices_s = work_s(vertices);
+  out.vertices_s = beside_s(work_s(vertices), load.triangles * c.triangle_s, c.triangle_overlap);
   const Shaded s = shaded_fragments(load, screen_pixels);
   const double shade_s = mixed(c.fragment_s, load.textured_share, &Curve::at, s.covered_share);
   const std::array fragments{Work{s.shaded, shade_s}, Work{s.hidden, c.hidden_fragment_s}};
@@ -185,6 +194,15 @@ GpuStages device_stages(const Load& load, double screen_pixels, const UnitCosts&
   if (plain_s > 0.0 && load.fragments > 0.0)
     out.fragments_s += c.edge_s * outlines(load) * out.fragments_s / (plain_s * load.fragments);
   return out;
+}
+
+double queries_device_s(double asked, double hidden, double fragments, const UnitCosts& c) {
+  if (asked <= 0.0) return 0.0;
+  const double seen = std::max(0.0, asked - hidden);
+  const double passing = fragments * seen / asked;
+  const double failing = 2.0 * fragments - passing;
+  return asked * c.query_s + seen * c.seen_query_s + passing * c.asked_fragment_s +
+         failing * c.hidden_fragment_s;
 }
 
 Prediction predict(Method method, const FrameFacts& f, const UnitCosts& c, const PredictionOptions& options) {
@@ -215,17 +233,21 @@ Prediction predict(Method method, const FrameFacts& f, const UnitCosts& c, const
 
   const Load all = together(taken.drawn, f.blended);
   p.shadows_device_s = f.shadow_vertices * c.shadow_vertex_s;
-  p.draw_device_s = gpu_s(device_stages(all, f.screen_pixels, c), {}, 0.0, c.stage_overlap) +
+  GpuStages stages = device_stages(all, f.screen_pixels, c);
+  if (way.kept)
+    stages.vertices_s = beside_s(nodes_state_s(taken, c, options.indirect_nodes),
+                                 std::max(stages.state_s, stages.vertices_s), c.node_overlap);
+  p.draw_device_s = gpu_s(stages, {}, 0.0, c.stage_overlap) +
                     (way.kept ? nodes_device_s(taken, c, options.indirect_nodes) : 0.0);
   if (asks) {
-    const GpuStages boxes{0.0, 0.0, taken.asked_area * c.hidden_fragment_s};
-    p.query_device_s = gpu_s({}, boxes, execute_queries_s(n, t));
+    p.query_device_s = queries_device_s(n.queried_nodes, taken.found, taken.asked_area, c);
     if (taken.hidden > 0.0) p.query_device_s += c.second_part_device_s;
   }
   const double sky_s =
       shaded_fragments(all, f.screen_pixels).covered_share * f.screen_pixels * c.background_s;
   p.gpu_s = std::max(0.0, c.empty_device_s - sky_s) + p.shadows_device_s + p.draw_device_s + p.query_device_s;
   p.frame_s = frame_s(p.cpu_s, p.gpu_s, options.frames_in_flight, t);
+  if (options.frames_in_flight <= 1) p.frame_s -= c.send_overlap * std::min(p.secondaries_s, p.gpu_s);
   return p;
 }
 

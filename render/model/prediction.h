@@ -26,10 +26,11 @@ constexpr std::size_t kMethods = 7;
 /// What the device has to draw.
 struct Load {
   double draws = 0;
-  double vertices = 0;
+  double vertices = 0;        ///< that are shaded
   double fragments = 0;       ///< (2.23), clamped to the screen each
   double textured_share = 0;  ///< of draws
   double screen_share = 0;    ///< of the screen's pixels that end up covered, at most 1; 0: not known
+  double triangles = 0;
 };
 
 /// Counts of one frame. Those of the way that was taken are exact; the others are estimates (`exact` says
@@ -102,13 +103,17 @@ struct Shaded {
 [[nodiscard]] Shaded shaded_fragments(const Load& load, double screen_pixels);
 
 /// Sum over the triangles that are seen of the root of their area in fragments, in proportion to the length
-/// of their outlines: devices shade fragments in blocks of several, so what an outline cuts through costs
-/// extra. Half of the triangles face the viewer; of those smaller than a fragment, only as many as fragments
-/// count.
+/// of their outlines: a pixel that an outline cuts through is shaded for the triangles on both sides of it.
+/// Half of the triangles face the viewer; of those smaller than a fragment, only as many as fragments count.
 [[nodiscard]] double outlines(const Load& load);
 
-/// (2.18) to (2.20) of a load. The cost of a draw's commands is part of T_vert.
+/// (2.18) to (2.20) of a load. The cost of a draw's commands is part of T_vert too.
 [[nodiscard]] GpuStages device_stages(const Load& load, double screen_pixels, const UnitCosts& costs);
+
+/// (2.19) to (2.21) of queries: `asked`, of which `hidden` find nothing, and the fragments of their boxes.
+/// Boxes do not hide each other: of those that are seen, the faces towards the eye pass the depth test; all
+/// others fail it.
+[[nodiscard]] double queries_device_s(double asked, double hidden, double fragments, const UnitCosts& costs);
 
 /// What (2.10) to (2.12) give for a way of drawing; stages that it does not have are 0. Mended: T_0 is added
 /// (D's own predictions end there), sky that is covered is taken off it, and (2.11), (2.12) take as much of

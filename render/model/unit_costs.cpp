@@ -45,19 +45,24 @@ UnitCosts rough_costs(bool software_device) {
   // lavapipe: 1.3 us a draw and 30 ns a vertex; H100: 14 ns a tiny draw, then some 0.6 ns a vertex.
   c.draw_s.fill(software_device ? Curve{{3, 36, 3600}, {1.4e-6, 2.4e-6, 110e-6}}
                                 : Curve{{3, 36, 3600}, {14e-9, 30e-9, 2e-6}});
+  c.triangle_s = software_device ? 40e-9 : 1e-9;
   c.fragment_s.fill(software_device ? Curve{{0.01, 1}, {15e-9, 10e-9}} : Curve{{0.01, 1}, {50e-12, 20e-12}});
   c.hidden_fragment_s = software_device ? 1e-9 : 5e-12;
-  c.secondary_device_s = software_device ? 5e-6 : 0.5e-6;
+  c.secondary_device_s = software_device ? 5e-6 : 1.5e-6;
   c.node_command_device_s = software_device ? 2e-6 : 0.3e-6;
   c.indirect_draw_s = software_device ? 1.3e-6 : 14e-9;
   c.skipped_draw_s = software_device ? 110e-9 : 10e-9;
   c.edge_s = software_device ? 1e-6 : 0.0;
   c.background_s = software_device ? 5e-9 : 10e-12;
-  c.query_s = software_device ? 10e-6 : 0.3e-6;
+  c.query_s = software_device ? 10e-6 : 0.05e-6;
+  c.seen_query_s = software_device ? 0.0 : 0.15e-6;
+  c.asked_fragment_s = software_device ? 1e-9 : 0.5e-9;
   c.second_part_device_s = software_device ? 100e-6 : 30e-6;
   c.shadow_slot_s = 3e-9;
   c.shadow_vertex_s = software_device ? 20e-9 : 0.5e-9;
   c.stage_overlap = software_device ? 0.5 : 1.0;
+  c.triangle_overlap = software_device ? 0.0 : 1.0;
+  c.node_overlap = software_device ? 0.0 : 0.6;
   c.frame_overlap = software_device ? 0.5 : 1.0;
   c.latency_s = 40e-6;
   c.empty_device_s = software_device ? 2e-3 : 100e-6;

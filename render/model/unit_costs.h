@@ -48,23 +48,29 @@ struct UnitCosts {
 
   // Device.
   std::array<Curve, kShadings>
-      draw_s;  ///< t_state, t_vert: one draw, by vertices in it (line_at), hardly a fragment
+      draw_s;  ///< t_state, t_vert: one draw, by vertices shaded in it (line_at), hardly a fragment
+  double triangle_s = 0;  ///< and each triangle of it, beside its vertices as far as triangle_overlap says
   std::array<Curve, kShadings> fragment_s;  ///< t_frag: one fragment, by the share of the screen covered (at)
   double edge_s = 0;                        ///< what outlines of triangles add to t_frag, by outlines()
-  double hidden_fragment_s = 0;             ///< one that fails the depth test
+  double hidden_fragment_s = 0;             ///< one that fails the depth test, of things among others
   double background_s = 0;                  ///< one of the sky: part of T_0 that whatever covers it saves
-  double secondary_device_s = 0;            ///< executing a kept command buffer
+  double secondary_device_s = 0;            ///< t_state: executing a kept command buffer, beside its draws
   double node_command_device_s = 0;         ///< executing an indirect draw with a count, whatever is in it
   double indirect_draw_s = 0;               ///< one draw of it (instead of draw_s' part that is commands)
   double skipped_draw_s = 0;                ///< t_skip: a draw under a predicate that is 0
-  double query_s = 0;                       ///< t_exec: one query, its box included, hardly a fragment
+  double query_s = 0;                       ///< t_exec: one query whose box is hidden, hardly a fragment
+  double seen_query_s = 0;                  ///< what one whose box is seen takes beyond that
+  double asked_fragment_s = 0;              ///< a fragment of a query's box that is seen
   double second_part_device_s = 0;  ///< T_2: exact queries: copy, scatter, barriers, the pass's second part
   double shadow_vertex_s = 0;       ///< one vertex in the shadow map's pass
   double empty_device_s = 0;        ///< T_0
 
   // How far work is done side by side: 1 all of the shorter part, as (2.11) and (2.12) have it; 0 none.
-  double stage_overlap = 1;  ///< vertices with fragments
-  double frame_overlap = 1;  ///< processor with device, several frames in flight
+  double stage_overlap = 1;     ///< vertices with fragments
+  double triangle_overlap = 1;  ///< vertices with triangles: GPUs have units for each, processors not
+  double node_overlap = 1;      ///< executing kept command buffers with their vertices
+  double frame_overlap = 1;     ///< processor with device, several frames in flight
+  double send_overlap = 0;      ///< sending kept command buffers with the device, one frame in flight
   double latency_s = 0;  ///< T_0: from submitting to being told of the end, beyond the work; one in flight
 };
 

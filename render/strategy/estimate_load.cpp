@@ -1,11 +1,51 @@
 #include "render/strategy/estimate_load.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 namespace scenegen::render {
 namespace {
+
+/// The picture in cells: how much of each is covered, by things that do not know of each other.
+class Coverage {
+ public:
+  explicit Coverage(const ScreenArea& screen) : screen_(screen) {}
+
+  /// `times` like it lie about there. The fragments that are in the picture, of one.
+  double add(const ScreenArea::Spot& spot, double filled, double times) {
+    const glm::dvec2 cell = screen_.size() / glm::dvec2(kColumns, kRows);
+    const glm::dvec2 lo = (spot.middle - 0.5 * spot.sides) / cell;
+    const glm::dvec2 hi = (spot.middle + 0.5 * spot.sides) / cell;
+    double inside = 0.0;
+    const auto part = [](double from, double to, int i) {
+      return std::max(0.0, std::min(to, i + 1.0) - std::max(from, static_cast<double>(i)));
+    };
+    for (int y = first(lo.y); y < std::min<double>(kRows, hi.y); ++y) {
+      for (int x = first(lo.x); x < std::min<double>(kColumns, hi.x); ++x) {
+        const double share = part(lo.x, hi.x, x) * part(lo.y, hi.y, y) * filled;
+        inside += share;
+        open_[static_cast<std::size_t>(y * kColumns + x)] += times * std::log1p(-std::min(share, kAll));
+      }
+    }
+    return inside * cell.x * cell.y;
+  }
+  [[nodiscard]] double share() const {
+    double sum = 0.0;
+    for (const double open : open_) sum -= std::expm1(open);
+    return sum / static_cast<double>(open_.size());
+  }
+
+ private:
+  static constexpr int kColumns = 16, kRows = 9;
+  static constexpr double kAll = 0.9999;
+  static int first(double at) { return static_cast<int>(std::clamp(at, 0.0, 1e6)); }
+
+  const ScreenArea& screen_;
+  std::array<double, kColumns * kRows> open_{};  // logarithms of the open share
+};
 
 /// Sums up some slots of many, then scales.
 class Sample {
@@ -14,9 +54,9 @@ class Sample {
 
   void add(std::uint32_t slot) {
     const DrawPrimitive& primitive = scene_.primitive(slot);
-    ++taken_;
+    spots_[taken_++] = {screen_.spot(scene_.boxes().get(slot)), primitive.work.covered_share};
     vertices_ += primitive.work.vertices;
-    fragments_ += screen_.fragments(scene_.boxes().get(slot));
+    triangles_ += primitive.work.triangles;
     textured_ += scene_.batches()[primitive.batch].state.texture_set != 0 ? 1.0 : 0.0;
   }
 
@@ -26,9 +66,12 @@ class Sample {
     load.draws = static_cast<double>(draws);
     const double scale = load.draws / static_cast<double>(taken_);
     load.vertices = scale * vertices_;
-    load.fragments = scale * fragments_;
+    load.triangles = scale * triangles_;
     load.textured_share = textured_ / static_cast<double>(taken_);
-    load.screen_share = screen_.covered_share(load.fragments);
+    Coverage coverage(screen_);
+    for (std::size_t i = 0; i < taken_; ++i)
+      load.fragments += scale * coverage.add(spots_[i].first, spots_[i].second, scale);
+    load.screen_share = coverage.share();
     return load;
   }
 
@@ -36,7 +79,8 @@ class Sample {
   const DrawScene& scene_;
   const ScreenArea& screen_;
   std::size_t taken_ = 0;
-  double vertices_ = 0, fragments_ = 0, textured_ = 0;
+  double vertices_ = 0, triangles_ = 0, textured_ = 0;
+  std::array<std::pair<ScreenArea::Spot, double>, kSampledSlots> spots_;  // no memory is asked for in a frame
 };
 
 /// The middles of kSampledSlots equal parts of `count` things; all of them when there are no more.
@@ -64,6 +108,9 @@ std::uint64_t solid_bits(const DrawScene& scene, std::size_t word) {
 ScreenArea::ScreenArea(const View& view, glm::uvec2 size) {
   screen_.width = size.x;
   screen_.height = size.y;
+  clip_from_world_ = view.clip_from_world;
+  right_ = glm::dvec3(view.world_from_camera[0]);
+  up_ = glm::dvec3(view.world_from_camera[1]);
   screen_.eye_m = view.eye_m();
   screen_.forward = view.forward();
   screen_.near_m = view.lens.near_m;
@@ -86,8 +133,31 @@ double ScreenArea::fragments(const Octree::Content& content) const {
   return fragments(content.box_m, model::occupied_share(content.area_m2, content.box_m));
 }
 
-double ScreenArea::covered_share(double fragments) const {
-  return 1.0 - std::exp(-fragments / pixels());
+ScreenArea::Spot ScreenArea::spot(const Box& box) const {
+  if (box.empty()) return {};
+  const glm::dvec3 middle(box.centre());
+  const glm::dvec4 clip = clip_from_world_ * glm::dvec4(middle, 1.0);
+  const glm::dvec3 s(box.size());
+  const double distance = glm::dot(middle - screen_.eye_m, screen_.forward);
+  Spot out;
+  if (per_m2_ != 0.0 || distance > std::max(screen_.near_m, glm::length(s))) {
+    const glm::dvec3 seen_from =
+        per_m2_ != 0.0 ? glm::abs(screen_.forward) : glm::abs(glm::normalize(middle - screen_.eye_m));
+    const double face_m2 = glm::dot(seen_from, glm::dvec3(s.y * s.z, s.z * s.x, s.x * s.y));
+    const double per_m = 0.5 * screen_.height / std::tan(0.5 * screen_.yfov_rad);
+    // A plane is hit the more aslant the farther it is from the middle of the picture.
+    const double slant = per_m2_ != 0.0 ? 1.0 : glm::length(middle - screen_.eye_m) / distance;
+    const double fragments = face_m2 * slant * (per_m2_ != 0.0 ? per_m2_ : std::pow(per_m / distance, 2.0));
+    const double wide = std::max(glm::dot(glm::abs(right_), s), 1e-9 * glm::length(s));
+    const double high = std::max(glm::dot(glm::abs(up_), s), 1e-9 * glm::length(s));
+    if (fragments > 0.0)
+      out.sides = std::sqrt(fragments) * glm::dvec2(std::sqrt(wide / high), std::sqrt(high / wide));
+    out.middle = 0.5 * (1.0 + glm::dvec2(clip) / clip.w) * size();
+    return out;
+  }
+  out.sides = std::sqrt(model::box_fragments(box, 1.0, screen_) / pixels()) * size();
+  out.middle = 0.5 * size();
+  return out;
 }
 
 model::Load load_of_slots(const DrawScene& scene, std::span<const std::uint32_t> slots,
@@ -119,16 +189,13 @@ model::Load load_of_visible(const DrawScene& scene, const ScreenArea& screen) {
 
 model::Load load_of_chunks(const DrawScene& scene, const Octree& tree, std::span<const std::uint32_t> chunks,
                            const ScreenArea& screen) {
-  model::Load load;
+  double vertices = 0.0;
   std::size_t count = 0;
   for (const std::uint32_t number : chunks) {
     const Octree::Content& content = tree.chunk(number).content;
     count += content.slots;
-    load.vertices += static_cast<double>(content.vertices);
-    load.fragments += screen.fragments(content);
+    vertices += static_cast<double>(content.vertices);
   }
-  load.draws = static_cast<double>(count);
-  load.screen_share = screen.covered_share(load.fragments);
   Sample sample(scene, screen);
   Steps steps(count);
   std::size_t passed = 0;
@@ -137,7 +204,8 @@ model::Load load_of_chunks(const DrawScene& scene, const Octree& tree, std::span
     for (; steps.below(passed + slots.size()); steps.next()) sample.add(slots[steps.at() - passed]);
     passed += slots.size();
   }
-  load.textured_share = sample.scaled(count).textured_share;
+  model::Load load = sample.scaled(count);
+  load.vertices = vertices;
   return load;
 }
 

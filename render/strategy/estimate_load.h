@@ -21,11 +21,20 @@ class ScreenArea {
   [[nodiscard]] double fragments(const Box& box, double occupied = 1.0) const;
   [[nodiscard]] double fragments(const Octree::Content& content) const;
   [[nodiscard]] double pixels() const { return screen_.width * screen_.height; }
-  /// The share of the picture that `fragments` cover when they lie anywhere: 1 - exp(-fragments / pixels).
-  [[nodiscard]] double covered_share(double fragments) const;
+  /// Where a box is seen, as a rectangle of the size and the proportions of its outline: seen from that side,
+  /// not by its mean face as (2.23) has it. Boxes that reach round the eye are taken by (2.23).
+  struct Spot {
+    glm::dvec2 middle{0};  ///< pixels
+    glm::dvec2 sides{0};   ///< pixels
+    [[nodiscard]] double fragments() const { return sides.x * sides.y; }
+  };
+  [[nodiscard]] Spot spot(const Box& box) const;
+  [[nodiscard]] glm::dvec2 size() const { return {screen_.width, screen_.height}; }
 
  private:
   model::Screen screen_;
+  glm::dmat4 clip_from_world_{1};
+  glm::dvec3 right_{1, 0, 0}, up_{0, 1, 0};
   double per_m2_ = 0;  // orthographic: pixels a square metre
 };
 
@@ -37,7 +46,7 @@ constexpr std::size_t kSampledSlots = 512;
                                         const ScreenArea& screen);
 /// Of opaque and masked slots that are visible by timeline. O(slots / 64).
 [[nodiscard]] model::Load load_of_visible(const DrawScene& scene, const ScreenArea& screen);
-/// Draws and vertices are exact, fragments by the chunks' boxes and the share of them that is occupied.
+/// Draws and vertices are exact, fragments by kSampledSlots.
 [[nodiscard]] model::Load load_of_chunks(const DrawScene& scene, const Octree& tree,
                                          std::span<const std::uint32_t> chunks, const ScreenArea& screen);
 /// Of the slots of these chunks, those in the frustum: all by a sample.

@@ -118,6 +118,9 @@ double QueryChooser::seconds_of(const Frame& frame, const Octree::Content& conte
     draw_s -= c.skipped_draw_s;
   }
   double seconds = std::max({0.0, draws * draw_s, frame.screen.fragments(content) * c.hidden_fragment_s});
+  // Skipped under a predicate, executing it still costs, with nothing to be beside.
+  if (settings_.exact && !settings_.indirect)
+    seconds = std::max(0.0, seconds - c.node_overlap * c.secondary_device_s);
   if (!settings_.exact) seconds += settings_.indirect ? c.node_command_device_s : c.secondary_device_s;
   return seconds;
 }

@@ -36,10 +36,14 @@ UnitCosts units() {
   c.indirect_draw_s = 41;
   c.skipped_draw_s = 4;
   c.query_s = 43;
+  c.seen_query_s = 3;
+  c.asked_fragment_s = 1.5;
   c.second_part_device_s = 2000;
   c.shadow_vertex_s = 0.0625;
   c.empty_device_s = 20'000;
   c.latency_s = 500;
+  c.node_overlap = 0.75;
+  c.send_overlap = 0.5;
   return c;
 }
 
@@ -115,7 +119,8 @@ TEST_CASE("predictions: ways that record each frame") {
   CHECK(asking.record_s == Approx(40 * 11));
   CHECK(asking.queries_cpu_s == Approx(100 * (23 + 29)));
   CHECK(asking.draw_device_s == Approx(40 * kDraw));
-  CHECK(asking.query_device_s == Approx(100 * 43));  // above 1000 * 0.5
+  // 40 are seen, with as large a share of the fragments; the other faces of the boxes fail, and all of 60.
+  CHECK(asking.query_device_s == Approx(100 * 43 + 40 * 3 + 400 * 1.5 + 1600 * 0.5));
 }
 
 TEST_CASE("predictions: ways that keep commands") {
@@ -123,24 +128,27 @@ TEST_CASE("predictions: ways that keep commands") {
   CHECK(octree.record_s == Approx(30 * 13));
   CHECK(octree.secondaries_s == Approx(kSecondaries));
   CHECK(octree.cpu_s == Approx(10'000 + kUpdate + kTree + kCull + 390 + kSecondaries));
-  CHECK(octree.gpu_s == Approx(kDevice + 180 * kDraw + 12 * 31));
+  CHECK(octree.gpu_s == Approx(kDevice + 180 * kDraw + 0.25 * 12 * 31));  // the rest beside the vertices
+  CHECK(octree.frame_s == Approx(octree.cpu_s + octree.gpu_s + 500 - 0.5 * kSecondaries));
 
   const Prediction all = predict(Method::queries_all, facts(), units(), kOneByOne);
   CHECK(all.queries_cpu_s == Approx(12 * (23 + 29) + 1000));
   CHECK(all.secondaries_s == Approx(kSecondaries));  // hidden ones are executed all the same
-  CHECK(all.draw_device_s == Approx(60 * kDraw + 12 * 31 + 120 * 4));
-  CHECK(all.query_device_s == Approx(1100 * 0.5 + 2000));  // above 12 * 43
+  // Those of the second part have nothing to be beside.
+  CHECK(all.draw_device_s == Approx(60 * kDraw + 0.25 * 4 * 31 + 8 * 31 + 120 * 4));
+  const double passing = 1100 * 4 / 12.0;
+  CHECK(all.query_device_s == Approx(12 * 43 + 4 * 3 + passing * 1.5 + (2 * 1100 - passing) * 0.5 + 2000));
 
   const Prediction some = predict(Method::queries, facts(), units(), kOneByOne);
   CHECK(some.queries_cpu_s == Approx(5 * (23 + 29) + 1000));
-  CHECK(some.draw_device_s == Approx(135 * kDraw + 12 * 31 + 45 * 4));
-  CHECK(some.query_device_s == Approx(5 * 43 + 2000));
+  CHECK(some.draw_device_s == Approx(135 * kDraw + 0.25 * 9 * 31 + 3 * 31 + 45 * 4));
+  CHECK(some.query_device_s == Approx(5 * 43 + 2 * 3 + 8 * 1.5 + 32 * 0.5 + 2000));
 
   const Prediction late = predict(Method::queries, facts(), units(), {1, false, false});
   CHECK(late.queries_cpu_s == Approx(5 * (23 + 29)));
   CHECK(late.secondaries_s == Approx(9 * 105));
-  CHECK(late.draw_device_s == Approx(135 * kDraw + 9 * 31));
-  CHECK(late.query_device_s == Approx(5 * 43));
+  CHECK(late.draw_device_s == Approx(135 * kDraw + 0.25 * 9 * 31));
+  CHECK(late.query_device_s == Approx(5 * 43 + 2 * 3 + 8 * 1.5 + 32 * 0.5));
 
   const Prediction indirect = predict(Method::queries, facts(), units(), {1, true, true});
   CHECK(indirect.record_s == Approx(30 * 19));
@@ -175,6 +183,24 @@ TEST_CASE("predictions: several frames in flight, overlaps, shadows, blended obj
   const Prediction glass = predict(Method::octree, f, units(), kOneByOne);
   CHECK(glass.record_s - one.record_s == Approx(10 * 11));
   CHECK(glass.draw_device_s - one.draw_device_s == Approx(10 * 116));
+}
+
+TEST_CASE("predictions: triangles are done beside vertices, or after them") {
+  UnitCosts c = units();
+  c.triangle_s = 5;
+  const Load load{10, 360, 0, 0, 0, 200};  // 73 a draw, 100 for its triangles
+  CHECK(device_stages(load, 1000, c).vertices_s == Approx(1000));
+  c.triangle_overlap = 0;
+  CHECK(device_stages(load, 1000, c).vertices_s == Approx(1730));
+}
+
+TEST_CASE("predictions: outlines grow with the triangles that are seen") {
+  const auto outline = [](double fragments, double triangles) {
+    return outlines({1, 0, fragments, 0, 0, triangles});
+  };
+  CHECK(outline(10'000, 2) == Approx(100));  // one faces the eye
+  CHECK(outline(10'000, 8) == Approx(200).epsilon(0.01));
+  CHECK(outline(100, 1e6) == Approx(100).epsilon(0.01));  // no more are seen than there are fragments
 }
 
 TEST_CASE("predictions: how many fragments are shaded") {

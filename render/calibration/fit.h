@@ -1,0 +1,81 @@
+// Unit costs from what test scenes took: how times grow with what is drawn.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "render/calibration/calibration.h"
+#include "render/calibration/measure.h"
+#include "render/calibration/test_scene.h"
+
+namespace scenegen::render::calibration {
+
+/// What one renderer measured, by trial.
+struct Run {
+  const TestScene* test = nullptr;
+  std::vector<Measured> results;
+
+  [[nodiscard]] const Measured& empty() const { return results.front(); }
+  /// Steps of a trial that were measured, in order.
+  [[nodiscard]] std::vector<std::size_t> of(Trial trial) const;
+  [[nodiscard]] const Step& step(std::size_t i) const { return test->steps[i]; }
+  /// Device time beyond an empty frame: by its own clock where it has one.
+  [[nodiscard]] double device_s(std::size_t i) const {
+    return device_of(results[i].steady) - device_of(empty().steady);
+  }
+  [[nodiscard]] double record_s(std::size_t i) const {
+    return results[i].steady.record_s - empty().steady.record_s;
+  }
+  [[nodiscard]] double plan_s(std::size_t i) const {
+    return results[i].steady.plan_s - empty().steady.plan_s;
+  }
+  /// As the model is told of it; only of runs with predictions.
+  [[nodiscard]] const model::Load& load(std::size_t i) const { return results[i].report.facts.in_frustum; }
+  [[nodiscard]] static double device_of(const Stages& stages) {
+    return stages.gpu_s >= 0.0 ? stages.gpu_s : stages.device_s;
+  }
+};
+
+/// Takes costs from runs; remembers which came out negative.
+class Fit {
+ public:
+  explicit Fit(Calibration& out, double pixels) : out_(out), c_(out.costs), pixels_(pixels) {}
+
+  void inline_run(const Run& run);
+  void shadows(const Run& with, const Run& without);
+  /// Runs of `octree` by objects a node, ascending.
+  void kept(const Run& flat, const std::vector<std::pair<std::uint32_t, Run>>& runs);
+  void listed(const Run& run);
+  void queries(const Run& flat, const Run& each);
+  /// The same boxes from the same kept commands, without queries and with one for each chunk.
+  void asked_fragments(const Run& kept, const Run& asking);
+  void second_part(const Run& kept, const Run& asking);
+  void indirect(const Run& flat, const Run& fine, const Run& coarse);
+  void finish();
+
+ private:
+  double positive(const char* name, double value);
+  void set(const char* name, double& unit, double value);
+  void set(const char* name, model::Curve& curve, model::Curve value);
+  void empty_frame(const Run& run);
+  void draws(const Run& run);
+  void fragments(const Run& run);
+  void triangles(const Run& run);
+  void piles(const Run& run);
+  void overlaps(const Run& run);
+  void meshes(const Run& run);
+  void walking(const Run& flat, const std::vector<std::pair<std::uint32_t, Run>>& runs);
+  void executing(const Run& flat, const std::vector<std::pair<std::uint32_t, Run>>& runs);
+  [[nodiscard]] double geometry_s(const Run& run, std::size_t i) const;
+  model::Curve layers(const Run& run, Trial trial) const;
+
+  Calibration& out_;
+  model::UnitCosts& c_;
+  double pixels_;
+  double box_s_ = 0;  // drawing a box of less than a pixel
+  std::vector<std::string> measured_;
+};
+
+}  // namespace scenegen::render::calibration
