@@ -43,7 +43,7 @@ TEST_CASE("help has headed groups, defaults and ranges") {
 
 TEST_CASE("help fits a terminal and is in docs/CLI.md as it stands") {
   const std::string reference = read_file(SCENEGEN_SOURCE_DIR "/docs/CLI.md");
-  for (const char* verb : {"", "animate", "schedule", "inspect", "diff", "optimize"}) {
+  for (const char* verb : {"", "animate", "schedule", "inspect", "diff", "optimize", "truth"}) {
     INFO(verb);
     const std::string text = help(verb);
     for (const std::string& line : lines(text)) {
