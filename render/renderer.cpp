@@ -185,8 +185,8 @@ void Renderer::State::record_shadows(vkr::Frame& frame, vkr::Barriers& barriers,
   if (options.shadows) {
     DrawRecorder recorder(frame.commands, *pipelines, *gpu, *scene, vkr::PassKind::shadow);
     record_all_solid(recorder, *scene);
-    report.shadow_draws = recorder.draws();
-    report.shadow_triangles = recorder.triangles();
+    report.shadow_draws = recorder.recorded().draws;
+    report.shadow_triangles = recorder.recorded().triangles;
   }
   frame.commands.endRenderPass();
   barriers.image(shadow->depth, vkr::Use::sampled).flush(frame.commands);
@@ -208,8 +208,11 @@ void Renderer::State::record_color(vkr::Frame& frame, vkr::Barriers& barriers, F
     record_readback(frame.commands, color->result(), readback(frame.color), barriers);
     frame.mark(frame.commands, GpuStage::readback);
   }
-  report.draws = pass.solid_draws() + blended.draws();
-  report.triangles = pass.solid_triangles() + blended.triangles();
+  Recorded all = pass.solid();
+  all.add(blended.recorded());
+  report.draws = all.draws;
+  report.triangles = all.triangles;
+  report.state_changes = all.state_changes;
 }
 
 void Renderer::State::record_ids(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report) {
@@ -223,8 +226,8 @@ void Renderer::State::record_ids(vkr::Frame& frame, vkr::Barriers& barriers, Fra
   if (wanted.depth && wanted.readback)
     record_readback(frame.commands, ids->depth, readback(frame.depth), barriers);
   if (wanted.readback) frame.mark(frame.commands, GpuStage::readback);
-  report.ids_draws = pass.solid_draws();
-  report.ids_triangles = pass.solid_triangles();
+  report.ids_draws = pass.solid().draws;
+  report.ids_triangles = pass.solid().triangles;
 }
 
 void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline::Player& player,

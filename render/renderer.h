@@ -56,10 +56,11 @@ struct RendererOptions {
 struct FrameReport : PlanCounters {
   double time_s = 0;
   std::uint64_t objects = 0;
-  std::uint64_t changed = 0;    ///< entries of the ChangeSet
-  std::uint64_t visible = 0;    ///< objects visible by timeline
-  std::uint64_t draws = 0;      ///< draw commands of the colour pass, without the sky
-  std::uint64_t triangles = 0;  ///< of the colour pass, without the sky
+  std::uint64_t changed = 0;        ///< entries of the ChangeSet
+  std::uint64_t visible = 0;        ///< objects visible by timeline
+  std::uint64_t draws = 0;          ///< draw commands of the colour pass, without the sky
+  std::uint64_t triangles = 0;      ///< of the colour pass, without the sky
+  std::uint64_t state_changes = 0;  ///< pipelines, sets of textures and windings bound there
   std::uint64_t shadow_draws = 0;
   std::uint64_t shadow_triangles = 0;
   std::uint64_t ids_draws = 0;  ///< of the pass of ids and depth

@@ -27,6 +27,7 @@ std::span<const CounterField> counter_fields() {
       CounterField{"drawn", &FrameReport::drawn},
       CounterField{"draws", &FrameReport::draws},
       CounterField{"triangles", &FrameReport::triangles},
+      CounterField{"stateChanges", &FrameReport::state_changes},
       CounterField{"shadowDraws", &FrameReport::shadow_draws},
       CounterField{"shadowTriangles", &FrameReport::shadow_triangles},
       CounterField{"idsDraws", &FrameReport::ids_draws},

@@ -60,9 +60,9 @@ void CommandCache::record(const PassRecording& pass, Kept& kept, std::span<const
   for (const std::uint32_t slot : slots) recorder.draw(slot);
   if (kept.predicates) kept.owner.endConditionalRenderingEXT();
   kept.owner.end();
-  kept.entry = {*kept.owner, recorder.draws(), recorder.triangles()};
+  kept.entry = {*kept.owner, recorder.recorded()};
   ++counters_.recorded;
-  counters_.recorded_draws += recorder.draws();
+  counters_.recorded_draws += recorder.recorded().draws;
 }
 
 bool CommandCache::fresh(std::uint32_t chunk, std::uint64_t revision) const {

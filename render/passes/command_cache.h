@@ -19,8 +19,7 @@ class CommandCache {
   /// What a chunk's commands hold.
   struct Entry {
     vk::CommandBuffer commands;
-    std::uint64_t draws = 0;
-    std::uint64_t triangles = 0;
+    Recorded held;
   };
 
   /// `fail_after`: throws out-of-memory when more buffers are wanted than this (0: never): for tests.

@@ -21,11 +21,16 @@ void DrawRecorder::bind_batch(std::uint32_t batch, bool listed) {
   std::uint32_t mask = gpu_.texture_mask(state.texture_set);
   if (pass_ != vkr::PassKind::color) mask &= state.alpha == AlphaMode::mask ? 1U << kTextureBaseColor : 0U;
   const vk::Pipeline pipeline = pipelines_.get({pass_, state.alpha, state.kind, mask, listed});
-  if (pipeline != pipeline_) commands_.bindPipeline(vk::PipelineBindPoint::eGraphics, pipeline);
-  pipeline_ = pipeline;
+  if (pipeline != pipeline_) {
+    commands_.bindPipeline(vk::PipelineBindPoint::eGraphics, pipeline);
+    pipeline_ = pipeline;
+    ++recorded_.state_changes;
+  }
   const std::uint32_t set = mask != 0 ? state.texture_set : 0;
-  if (set != texture_set_) gpu_.bind_texture_set(commands_, pipelines_.layout(), set);
+  if (set == texture_set_) return;
+  gpu_.bind_texture_set(commands_, pipelines_.layout(), set);
   texture_set_ = set;
+  ++recorded_.state_changes;
 }
 
 void DrawRecorder::set_winding(std::uint32_t slot, const DrawState& state) {
@@ -33,10 +38,15 @@ void DrawRecorder::set_winding(std::uint32_t slot, const DrawState& state) {
   // Both sides cast shadows: thin walls and open meshes leak no light.
   const bool both = state.double_sided || pass_ == vkr::PassKind::shadow;
   const vk::CullModeFlags cull = both ? vk::CullModeFlags{} : vk::CullModeFlags{Cull::eBack};
-  if (cull != cull_) commands_.setCullMode(cull_ = cull);
+  if (cull != cull_) {
+    commands_.setCullMode(cull_ = cull);
+    ++recorded_.state_changes;
+  }
   const vk::FrontFace front =
       scene_.mirrored(slot) ? vk::FrontFace::eClockwise : vk::FrontFace::eCounterClockwise;
-  if (front != front_) commands_.setFrontFace(front_ = front);
+  if (front == front_) return;
+  commands_.setFrontFace(front_ = front);
+  ++recorded_.state_changes;
 }
 
 void DrawRecorder::draw_run(std::uint32_t first, std::uint32_t count) {
@@ -46,8 +56,9 @@ void DrawRecorder::draw_run(std::uint32_t first, std::uint32_t count) {
   const GeometryRange& range = gpu_.range(primitive.geometry);
   if (range.index_count == 0) return;
   commands_.drawIndexed(range.index_count, count, range.first_index, range.vertex_offset, first);
-  ++draws_;
-  if (range.kind == PrimitiveKind::triangles) triangles_ += std::uint64_t{range.index_count / 3} * count;
+  ++recorded_.draws;
+  if (range.kind == PrimitiveKind::triangles)
+    recorded_.triangles += std::uint64_t{range.index_count / 3} * count;
 }
 
 void DrawRecorder::draw_indirect(const IndirectDraws& draws) {
@@ -61,8 +72,8 @@ void DrawRecorder::draw_indirect(const IndirectDraws& draws) {
   } else {
     commands_.drawIndexedIndirect(draws.commands, draws.offset, draws.count, kStride);
   }
-  draws_ += draws.count;
-  triangles_ += draws.triangles;
+  recorded_.draws += draws.count;
+  recorded_.triangles += draws.triangles;
 }
 
 void DrawRecorder::read_slots_from(vk::Buffer list) {
@@ -76,8 +87,9 @@ void DrawRecorder::draw_listed(std::uint32_t slot, std::uint32_t first, std::uin
   const GeometryRange& range = gpu_.range(primitive.geometry);
   if (range.index_count == 0) return;
   commands_.drawIndexed(range.index_count, count, range.first_index, range.vertex_offset, first);
-  ++draws_;
-  if (range.kind == PrimitiveKind::triangles) triangles_ += std::uint64_t{range.index_count / 3} * count;
+  ++recorded_.draws;
+  if (range.kind == PrimitiveKind::triangles)
+    recorded_.triangles += std::uint64_t{range.index_count / 3} * count;
 }
 
 void record_all_solid(DrawRecorder& recorder, const DrawScene& scene) {

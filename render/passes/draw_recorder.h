@@ -10,6 +10,18 @@
 
 namespace scenegen::render {
 
+/// What was recorded.
+struct Recorded {
+  std::uint64_t draws = 0;
+  std::uint64_t triangles = 0;
+  std::uint64_t state_changes = 0;  ///< pipelines, sets of textures and windings bound
+  void add(const Recorded& other) {
+    draws += other.draws;
+    triangles += other.triangles;
+    state_changes += other.state_changes;
+  }
+};
+
 /// Draws that stand in device memory, all of one state.
 struct IndirectDraws {
   std::uint32_t slot = 0;  ///< one of them
@@ -38,8 +50,7 @@ class DrawRecorder {
   /// state, geometry and whether they are mirrored.
   void draw_listed(std::uint32_t slot, std::uint32_t first, std::uint32_t count);
 
-  [[nodiscard]] std::uint64_t draws() const { return draws_; }
-  [[nodiscard]] std::uint64_t triangles() const { return triangles_; }
+  [[nodiscard]] const Recorded& recorded() const { return recorded_; }
 
  private:
   void bind_batch(std::uint32_t batch, bool listed = false);
@@ -56,8 +67,7 @@ class DrawRecorder {
   std::uint32_t texture_set_ = 0xFFFFFFFFU;
   vk::CullModeFlags cull_;
   vk::FrontFace front_ = vk::FrontFace::eCounterClockwise;
-  std::uint64_t draws_ = 0;
-  std::uint64_t triangles_ = 0;
+  Recorded recorded_;
 };
 
 /// Every visible opaque and masked slot, neighbours with the same primitive as one instanced draw: for passes

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
+
+#include "render/passes/occlusion.h"
 
 namespace scenegen::render {
 
@@ -64,10 +67,10 @@ void IndirectNodes::write(const PassContext& context, const Octree::Chunk& chunk
     const DrawPrimitive& primitive = scene.primitive(slot);
     const GeometryRange& range = context.gpu.range(primitive.geometry);
     if (range.index_count == 0) continue;
-    const bool same = !kept.runs.empty() && scene.primitive(kept.runs.back().slot).batch == primitive.batch &&
-                      scene.mirrored(kept.runs.back().slot) == scene.mirrored(slot) &&
-                      kept.runs.back().count < longest;
-    if (!same) kept.runs.push_back({slot, written, 0, 0});
+    const std::uint32_t state = 2 * primitive.batch + (scene.mirrored(slot) ? 1 : 0);
+    const bool same =
+        !kept.runs.empty() && kept.runs.back().state == state && kept.runs.back().count < longest;
+    if (!same) kept.runs.push_back({slot, state, written, 0, 0});
     Run& run = kept.runs.back();
     ++run.count;
     if (range.kind == PrimitiveKind::triangles) run.triangles += range.index_count / 3;
@@ -121,15 +124,30 @@ void IndirectNodes::update(const PassContext& context, const Octree& tree,
   counters_.written_bytes += draws * sizeof(Command);
 }
 
-std::uint32_t IndirectNodes::draw(DrawRecorder& recorder, std::uint32_t chunk, vk::Buffer counts,
-                                  std::uint64_t counts_offset) const {
-  const Kept& kept = kept_[chunk];
-  for (const Run& run : kept.runs) {
+std::size_t IndirectNodes::draw(DrawRecorder& recorder, const Part& part) {
+  // Counting sort by state: places before each, then chunk by chunk.
+  runs_before_.assign(1, 0);
+  for (const std::uint32_t number : part.chunks) {
+    for (const Run& run : kept_[number].runs) {
+      if (run.state + 2 > runs_before_.size()) runs_before_.resize(run.state + 2, 0);
+      ++runs_before_[run.state + 1];
+    }
+  }
+  std::partial_sum(runs_before_.begin(), runs_before_.end(), runs_before_.begin());
+  sent_.resize(runs_before_.back());
+  for (const std::uint32_t number : part.chunks) {
+    const std::vector<Run>& runs = kept_[number].runs;
+    for (std::uint32_t i = 0; i < runs.size(); ++i) sent_[runs_before_[runs[i].state]++] = {number, i};
+  }
+  if (part.reversed) std::reverse(sent_.begin(), sent_.end());
+  for (const Sent& sent : sent_) {
+    const Kept& kept = kept_[sent.chunk];
+    const Run& run = kept.runs[sent.run];
     const std::uint64_t offset = (std::uint64_t{kept.place.first} + run.first) * sizeof(Command);
     recorder.draw_indirect({run.slot, *blocks_[kept.place.block].buffer, offset, run.count, run.triangles,
-                            counts, counts_offset});
+                            part.counts, part.governed ? predicate_offset(sent.chunk) : kLetPassOffset});
   }
-  return static_cast<std::uint32_t>(kept.runs.size());
+  return sent_.size();
 }
 
 }  // namespace scenegen::render

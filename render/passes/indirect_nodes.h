@@ -25,7 +25,8 @@ class IndirectNodes {
 
   /// Draws of one state: `count` commands from `first` of the chunk's on.
   struct Run {
-    std::uint32_t slot = 0;  ///< one of them
+    std::uint32_t slot = 0;   ///< one of them
+    std::uint32_t state = 0;  ///< what is bound for them, in slot order: the batch, and whether mirrored
     std::uint32_t first = 0;
     std::uint32_t count = 0;
     std::uint64_t triangles = 0;
@@ -39,10 +40,17 @@ class IndirectNodes {
   [[nodiscard]] bool fresh(std::uint32_t chunk, std::uint64_t revision) const {
     return chunk < kept_.size() && kept_[chunk].place.size != 0 && kept_[chunk].revision == revision;
   }
-  /// Draws a chunk that update() was told of; returns the number of commands. With `counts`, only if the
-  /// 32-bit number at `offset` there is not 0.
-  std::uint32_t draw(DrawRecorder& recorder, std::uint32_t chunk, vk::Buffer counts = {},
-                     std::uint64_t offset = 0) const;
+  /// Chunks to draw in one part of a pass. With `counts` each command has a count there: the chunk's
+  /// predicate if `governed`, else one that always lets pass.
+  struct Part {
+    std::span<const std::uint32_t> chunks;
+    vk::Buffer counts;
+    bool governed = false;
+    bool reversed = false;
+  };
+  /// Draws chunks that update() was told of, state by state and in a state in the order of the chunks: what
+  /// is bound changes as often as there are states, not chunks. Returns the number of commands.
+  std::size_t draw(DrawRecorder& recorder, const Part& part);
 
   /// Since the last call.
   struct Counters {
@@ -69,6 +77,10 @@ class IndirectNodes {
     Place place;
     std::uint64_t last_used;
   };
+  struct Sent {
+    std::uint32_t chunk = 0;
+    std::uint32_t run = 0;
+  };
   Place take(const PassContext& context, std::uint32_t draws);
   void write(const PassContext& context, const Octree::Chunk& chunk, Kept& kept, bool reversed,
              Command* commands) const;
@@ -87,6 +99,8 @@ class IndirectNodes {
   std::vector<Kept> kept_;                           // by chunk
   vkr::Buffer staging_[kMostFramesInFlight];         // of each frame in flight
   std::vector<std::uint32_t> changed_;               // scratch
+  std::vector<std::uint32_t> runs_before_;           // scratch, by state
+  std::vector<Sent> sent_;                           // scratch
   std::vector<std::vector<vk::BufferCopy>> copies_;  // scratch, by block
   Counters counters_;
 };

@@ -25,8 +25,7 @@ void PassRecording::begin(Form form) {
 void PassRecording::end_first_part() {
   assert(part_ == vkr::PassPart::first && form_ != Form::not_begun);
   if (recorder_) {  // what it bound is not to be relied on after this
-    draws_ += recorder_->draws();
-    triangles_ += recorder_->triangles();
+    solid_.add(recorder_->recorded());
     recorder_.reset();
   }
   context_.frame.commands.endRenderPass();
@@ -43,16 +42,14 @@ DrawRecorder& PassRecording::draws() {
   return *recorder_;
 }
 
-void PassRecording::execute(std::span<const vk::CommandBuffer> secondaries, std::uint64_t draws,
-                            std::uint64_t triangles) {
+void PassRecording::execute(std::span<const vk::CommandBuffer> secondaries, const Recorded& held) {
   begin(Form::secondaries);
   if (!secondaries.empty()) {
     (*context_.frame.commands)
         .executeCommands(static_cast<std::uint32_t>(secondaries.size()), secondaries.data(),
                          *context_.frame.commands.getDispatcher());
   }
-  draws_ += draws;
-  triangles_ += triangles;
+  solid_.add(held);
 }
 
 const vk::raii::CommandBuffer& PassRecording::rest() {

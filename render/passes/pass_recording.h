@@ -37,8 +37,8 @@ class PassRecording {
 
   /// Draws of solid objects into the primary: the pass begins with the first call.
   [[nodiscard]] DrawRecorder& draws();
-  /// Cached secondaries instead, in order. `draws` and `triangles` are what they hold, for the report.
-  void execute(std::span<const vk::CommandBuffer> secondaries, std::uint64_t draws, std::uint64_t triangles);
+  /// Cached secondaries instead, in order. `held` is what they hold, for the report.
+  void execute(std::span<const vk::CommandBuffer> secondaries, const Recorded& held);
   /// The pass will have two parts: to be said before anything is executed.
   void in_two_parts() { part_ = vkr::PassPart::first; }
   /// Takes that back, before the pass has begun.
@@ -55,9 +55,10 @@ class PassRecording {
 
   [[nodiscard]] const PassContext& context() const { return context_; }
   [[nodiscard]] const Target& target() const { return target_; }
-  [[nodiscard]] std::uint64_t solid_draws() const { return draws_ + (recorder_ ? recorder_->draws() : 0); }
-  [[nodiscard]] std::uint64_t solid_triangles() const {
-    return triangles_ + (recorder_ ? recorder_->triangles() : 0);
+  [[nodiscard]] Recorded solid() const {
+    Recorded all = solid_;
+    if (recorder_) all.add(recorder_->recorded());
+    return all;
   }
 
  private:
@@ -70,8 +71,7 @@ class PassRecording {
   vkr::PassPart part_ = vkr::PassPart::whole;
   std::optional<DrawRecorder> recorder_;
   const vk::raii::CommandBuffer* rest_ = nullptr;
-  std::uint64_t draws_ = 0;
-  std::uint64_t triangles_ = 0;
+  Recorded solid_;
 };
 
 }  // namespace scenegen::render

@@ -192,17 +192,15 @@ void CachedOctree::execute(PassRecording& pass, std::span<const std::uint32_t> c
                            vk::CommandBuffer last) {
   const StageTimer timer(counters_.secondaries_ms);
   buffers_.clear();
-  std::uint64_t draws = 0;
-  std::uint64_t triangles = 0;
+  Recorded held;
   for (std::size_t i = 0; i < chunks.size(); ++i) {
     const CommandCache::Entry& entry = kept_[in_order(chunks, i)];
     buffers_.push_back(entry.commands);
-    draws += entry.draws;
-    triangles += entry.triangles;
+    held.add(entry.held);
   }
   counters_.secondaries += chunks.size();
   if (last) buffers_.push_back(last);
-  pass.execute(buffers_, draws, triangles);
+  pass.execute(buffers_, held);
 }
 
 void CachedOctree::draw(PassRecording& pass, std::span<const std::uint32_t> chunks, Occlusion* ask) {
@@ -218,8 +216,7 @@ void CachedOctree::draw(PassRecording& pass, std::span<const std::uint32_t> chun
   const vk::Buffer counts = ask != nullptr ? ask->predicates() : vk::Buffer{};
   {
     const StageTimer timer(counters_.secondaries_ms);
-    for (std::size_t i = 0; i < chunks.size(); ++i)
-      counters_.indirect_commands += nodes_->draw(recorder, in_order(chunks, i), counts, kLetPassOffset);
+    counters_.indirect_commands += nodes_->draw(recorder, {chunks, counts, false, context_.options.reversed});
   }
   if (ask == nullptr) return;
   const StageTimer timer(counters_.ask_ms);
@@ -230,12 +227,8 @@ void CachedOctree::draw_under(PassRecording& pass, std::span<const std::uint32_t
                               const Occlusion& predicates) {
   if (!indirect_form_) return execute(pass, chunks, {});
   const StageTimer timer(counters_.secondaries_ms);
-  DrawRecorder& recorder = pass.draws();
-  for (std::size_t i = 0; i < chunks.size(); ++i) {
-    const std::uint32_t chunk = in_order(chunks, i);
-    counters_.indirect_commands +=
-        nodes_->draw(recorder, chunk, predicates.predicates(), predicate_offset(chunk));
-  }
+  counters_.indirect_commands +=
+      nodes_->draw(pass.draws(), {chunks, predicates.predicates(), true, context_.options.reversed});
 }
 
 }  // namespace scenegen::render

@@ -310,6 +310,34 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("indirect draws change states as seldom as inline does; kept command buffers in each chunk") {
+  Path path = std::move(strategy_paths(3, 450)[2]);
+  // Two states that every node has draws of.
+  const std::size_t meshes = path.scene.meshes.size();
+  REQUIRE(meshes > 0);
+  Material both_sides;
+  both_sides.double_sided = true;
+  path.scene.materials.push_back(both_sides);
+  const MaterialId material(static_cast<std::uint32_t>(path.scene.materials.size() - 1));
+  for (std::size_t m = 0; m < meshes; ++m) {
+    path.scene.meshes.push_back(path.scene.meshes[m]);
+    for (Primitive& primitive : path.scene.meshes.back().primitives) primitive.material = material;
+  }
+  for (std::size_t i = 0; i < path.scene.objects.size(); i += 2)
+    path.scene.objects.mesh[i].value += static_cast<std::uint32_t>(meshes);
+  const Run flat = run_path(path, path_options("inline"));
+  const Run indirect = run_path(path, Way{"octree", NodeForm::indirect}.options());
+  const Run kept = run_path(path, Way{"octree"}.options());
+  const FrameReport& of_flat = flat.frames.back().report;
+  const FrameReport& of_indirect = indirect.frames.back().report;
+  const FrameReport& of_kept = kept.frames.back().report;
+  REQUIRE(of_indirect.chunks > 20);
+  CHECK(of_indirect.indirect_commands > 2 * of_indirect.chunks);  // in two passes, mostly of two states
+  CHECK(of_flat.state_changes > 1);
+  CHECK(of_indirect.state_changes == of_flat.state_changes);
+  CHECK(of_kept.state_changes > of_kept.chunks);
+}
+
 TEST_CASE("octree draws the same with full barriers") {
   const Path path = std::move(strategy_paths(12, 450)[4]);
   RendererOptions options = path_options("octree");
