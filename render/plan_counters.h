@@ -22,7 +22,7 @@ struct PlanCounters : StageTimes {
   std::uint64_t chunks = 0;             ///< of the octree, in the frustum
   std::uint64_t secondaries = 0;        ///< kept command buffers executed, in all passes but the shadows'
   std::uint64_t recorded = 0;           ///< kept chunks recorded, or written for indirect draws, anew
-  std::uint64_t recorded_draws = 0;     ///< draw commands in those
+  std::uint64_t recorded_draws = 0;     ///< slots that those draw
   std::uint64_t indirect_commands = 0;  ///< indirect draw commands in the place of secondaries
   std::uint64_t queries = 0;            ///< occlusion queries sent, in all passes
   std::uint64_t believed_hidden = 0;    ///< of them about what was believed hidden

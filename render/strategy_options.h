@@ -21,6 +21,8 @@ struct StrategyOptions {
   /// does): saves work, and objects that come into view appear some frames too late.
   bool late_visibility = false;
   NodeForm node_form = NodeForm::automatic;
+  /// For calibration: indirect draws are one a slot, though neighbours may be instances of one.
+  bool single_draws = false;
   /// For tests: as if the device had no indirect draws with a count.
   bool no_indirect_draws = false;
   /// For tests: as if the device had no conditional rendering.

@@ -40,6 +40,7 @@ class Runs {
     o.strategy = strategy;
     o.how.objects_per_node = per_node;
     o.how.node_form = form_;
+    o.how.single_draws = true;  // units are of a draw
     o.shadows = shadows;
     // For what the model is told of the scenes.
     o.predictions = std::string_view(strategy) == "inline" || std::string_view(strategy) == "queries-all";

@@ -47,6 +47,8 @@ void Experience::learn(const FrameFacts& f) {
   if (f.exact_octree && f.chunks > 0.0) {
     visits_ = f.nodes_visited / f.chunks;
     tests_ = f.boxes_tested / f.chunks;
+    if (f.commands_per_draw > 0.0) commands_per_draw_ = f.commands_per_draw;
+    if (f.runs_per_chunk > 0.0) runs_per_chunk_ = f.runs_per_chunk;
     if (f.in_frustum.draws > 0.0) excess_ = std::clamp(f.in_chunks.draws / f.in_frustum.draws, 1.0, 3.0);
   }
   if (f.exact_queries && f.chunks > 0.0) {
@@ -106,6 +108,8 @@ void Experience::fill_unknown(FrameFacts& f, std::uint32_t per_node, double chun
   if (!f.exact_inline && f.exact_octree && f.in_frustum.draws <= 0.0)
     f.in_frustum = scaled(f.in_chunks, 1.0 / excess_);
   if (!f.exact_octree) fill_octree(f, per_node, chunks_touched);
+  if (f.commands_per_draw <= 0.0) f.commands_per_draw = commands_per_draw_;
+  if (f.runs_per_chunk <= 0.0) f.runs_per_chunk = runs_per_chunk_;
   if (!f.exact_queries) fill_queries(f);
   // If everything was asked about, at least as much would be hidden.
   if (f.all_chunks_hidden <= 0.0) {

@@ -40,9 +40,10 @@ class Experience {
   void fill_queries(FrameFacts& facts) const;
 
   // Until something was seen: half-full to full chunks; some of a chunk in the frustum lies outside it.
-  double fill_ = 0.7;                  // draws in a chunk / objects a node
-  double excess_ = 1.15;               // draws in chunks in the frustum / draws in it
-  double visits_ = 1.3, tests_ = 2.0;  // a chunk
+  double fill_ = 0.7;                                  // draws in a chunk / objects a node
+  double excess_ = 1.15;                               // draws in chunks in the frustum / draws in it
+  double visits_ = 1.3, tests_ = 2.0;                  // a chunk
+  double commands_per_draw_ = 1, runs_per_chunk_ = 1;  // indirect draws
   bool queried_ = false;
   double asked_ = 0, asked_fragments_ = 0;       // of chunks; of their fragments
   double chunks_hidden_ = 0, draws_hidden_ = 0;  // of them

@@ -25,13 +25,19 @@ double mixed(const std::array<Curve, kShadings>& curves, double textured,
   return (1.0 - textured) * of(Shading::plain) + textured * of(Shading::textured);
 }
 
+double commands_of(const Load& load) {
+  return load.commands > 0.0 ? std::min(load.commands, load.draws) : load.draws;
+}
+
 /// The part of a draw that does not depend on its vertices.
 double command_s(const Load& load, const UnitCosts& c) {
   return mixed(c.draw_s, load.textured_share, &Curve::line_at, 0.0);
 }
 
 Load without(Load load, const Load& part) {
+  const double each = load.draws > 0.0 ? load.commands / load.draws : 0.0;
   load.draws = std::max(0.0, load.draws - part.draws);
+  load.commands = each * load.draws;
   load.vertices = std::max(0.0, load.vertices - part.vertices);
   load.triangles = std::max(0.0, load.triangles - part.triangles);
   load.fragments = std::max(0.0, load.fragments - part.fragments);
@@ -41,6 +47,7 @@ Load without(Load load, const Load& part) {
 Load together(const Load& a, const Load& b) {
   Load sum = a;
   sum.draws += b.draws;
+  if (a.commands > 0.0 || b.commands > 0.0) sum.commands = commands_of(a) + commands_of(b);
   sum.vertices += b.vertices;
   sum.triangles += b.triangles;
   sum.fragments += b.fragments;
@@ -52,12 +59,11 @@ Load together(const Load& a, const Load& b) {
 }
 
 /// `part` is everything that queries of this way hide.
-void take_queries(Taken& t, const FrameFacts& f, double asked, double chunks_hidden, const Load& part,
-                  bool exact) {
+void take_queries(Taken& t, double asked, double chunks_hidden, const Load& part, bool exact) {
   t.way.queries = true;
   t.counts.queried_nodes = asked;
   t.found = chunks_hidden;
-  t.drawn = without(f.in_chunks, part);
+  t.drawn = without(t.drawn, part);
   if (exact) {
     t.hidden = chunks_hidden;
     t.skipped = part.draws;
@@ -100,12 +106,16 @@ Taken take(Method method, const FrameFacts& f, const PredictionOptions& options)
       t.way = {true, true, false};
       t.drawn = f.in_chunks;
       t.executed = f.chunks;
+      if (options.indirect_nodes) {
+        t.drawn.commands = f.commands_per_draw * t.drawn.draws;
+        if (f.runs_per_chunk > 0.0) t.executed *= f.runs_per_chunk;
+      }
       t.counts.rerecorded_draws = f.draws_rerecorded;
       if (method == Method::queries_all) {
-        take_queries(t, f, f.chunks, f.all_chunks_hidden, f.all_hidden, options.exact);
+        take_queries(t, f.chunks, f.all_chunks_hidden, f.all_hidden, options.exact);
         t.asked_area = f.all_asked_fragments;
       } else if (method == Method::queries) {
-        take_queries(t, f, f.asked, f.chunks_hidden, f.hidden, options.exact);
+        take_queries(t, f.asked, f.chunks_hidden, f.hidden, options.exact);
         t.asked_area = f.asked_fragments;
       }
       break;
@@ -143,7 +153,8 @@ double nodes_state_s(const Taken& t, const UnitCosts& c, bool indirect) {
 double nodes_device_s(const Taken& t, const UnitCosts& c, bool indirect) {
   if (!indirect) return t.hidden * c.secondary_device_s + t.skipped * c.skipped_draw_s;
   // Its draws are commands of another kind; hidden ones are none at all.
-  return t.executed * c.node_command_device_s + t.drawn.draws * (c.indirect_draw_s - command_s(t.drawn, c));
+  return t.executed * c.node_command_device_s +
+         commands_of(t.drawn) * (c.indirect_draw_s - command_s(t.drawn, c));
 }
 
 }  // namespace
@@ -180,11 +191,14 @@ double outlines(const Load& load) {
 GpuStages device_stages(const Load& load, double screen_pixels, const UnitCosts& c) {
   if (load.draws <= 0.0) return {};
   GpuStages out;
-  out.state_s = state_s(load.draws, {.state = command_s(load, c)});
+  const double commands = commands_of(load);
+  out.state_s = state_s(commands, {.state = command_s(load, c)});
   const double per_draw = load.vertices / load.draws;
   const std::array vertices{
       Work{load.draws, mixed(c.draw_s, load.textured_share, &Curve::line_at, per_draw)}};
-  out.vertices_s = beside_s(work_s(vertices), load.triangles * c.triangle_s, c.triangle_overlap);
+  const double instances_save_s = (load.draws - commands) * command_s(load, c);
+  out.vertices_s =
+      beside_s(work_s(vertices) - instances_save_s, load.triangles * c.triangle_s, c.triangle_overlap);
   const Shaded s = shaded_fragments(load, screen_pixels);
   const double shade_s = mixed(c.fragment_s, load.textured_share, &Curve::at, s.covered_share);
   const std::array fragments{Work{s.shaded, shade_s}, Work{s.hidden, c.hidden_fragment_s}};

@@ -31,6 +31,7 @@ struct Load {
   double textured_share = 0;  ///< of draws
   double screen_share = 0;    ///< of the screen's pixels that end up covered, at most 1; 0: not known
   double triangles = 0;
+  double commands = 0;  ///< that draw them, several being instances of one; 0: one each
 };
 
 /// Counts of one frame. Those of the way that was taken are exact; the others are estimates (`exact` says
@@ -55,6 +56,9 @@ struct FrameFacts {
   Load in_chunks;           ///< all that is in them
   double chunks_rerecorded = 0;
   double draws_rerecorded = 0;
+  // Indirect draws: 0: not known.
+  double commands_per_draw = 0;  ///< slots that are instances of one command share it
+  double runs_per_chunk = 0;     ///< of one pipeline state: each is a command of the processor
 
   // Queries. `queries` asks x* chunks, `queries_all` all chunks; `inline_queries` asks about every slot in
   // the frustum by its own box.

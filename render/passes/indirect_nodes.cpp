@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstring>
 #include <numeric>
 
 #include "render/passes/occlusion.h"
@@ -10,10 +11,11 @@ namespace scenegen::render {
 
 using vkr::Use;
 
-IndirectNodes::IndirectNodes(std::uint32_t most_draws, std::uint64_t fail_after)
+IndirectNodes::IndirectNodes(std::uint32_t most_draws, std::uint64_t fail_after, bool single)
     : unit_((most_draws + kSizes - 1) / kSizes),
       block_commands_(std::max(kIndirectBlockCommands, kSizes * unit_)),
-      fail_after_(fail_after) {}
+      fail_after_(fail_after),
+      single_(single) {}
 
 IndirectNodes::Place IndirectNodes::take(const PassContext& context, std::uint32_t draws) {
   assert(draws > 0 && draws <= kSizes * unit_);
@@ -35,7 +37,7 @@ IndirectNodes::Place IndirectNodes::take(const PassContext& context, std::uint32
     using Usage = vk::BufferUsageFlagBits;
     blocks_.push_back(context.memory.buffer(sizeof(Command) * std::uint64_t{block_commands_},
                                             Usage::eIndirectBuffer | Usage::eTransferDst,
-                                            vkr::MemoryUse::device));
+                                            vkr::MemoryUse::written));
     used_ = 0;
   }
   const Place place{static_cast<std::uint32_t>(blocks_.size()) - 1, used_, size};
@@ -56,26 +58,34 @@ IndirectNodes::Command* IndirectNodes::stage(const PassContext& context, std::ui
   return reinterpret_cast<Command*>(staging.mapped());
 }
 
-void IndirectNodes::write(const PassContext& context, const Octree::Chunk& chunk, Kept& kept, bool reversed,
-                          Command* commands) const {
+void IndirectNodes::write(const PassContext& context, const Octree::Chunk& chunk, Kept& kept, bool reversed) {
   const DrawScene& scene = context.scene;
   const std::uint32_t longest = context.device.properties.limits.maxDrawIndirectCount;
   kept.runs.clear();
-  std::uint32_t written = 0;
+  commands_.clear();
+  const DrawPrimitive* last = nullptr;
   for (std::size_t i = 0; i < chunk.slots.size(); ++i) {
     const std::uint32_t slot = chunk.slots[reversed ? chunk.slots.size() - 1 - i : i];
     const DrawPrimitive& primitive = scene.primitive(slot);
     const GeometryRange& range = context.gpu.range(primitive.geometry);
     if (range.index_count == 0) continue;
     const std::uint32_t state = 2 * primitive.batch + (scene.mirrored(slot) ? 1 : 0);
-    const bool same =
-        !kept.runs.empty() && kept.runs.back().state == state && kept.runs.back().count < longest;
-    if (!same) kept.runs.push_back({slot, state, written, 0, 0});
-    Run& run = kept.runs.back();
-    ++run.count;
-    if (range.kind == PrimitiveKind::triangles) run.triangles += range.index_count / 3;
-    commands[written++] = {range.index_count, 1, range.first_index, range.vertex_offset, slot};
+    const std::uint32_t triangles = range.kind == PrimitiveKind::triangles ? range.index_count / 3 : 0;
+    const bool same = !kept.runs.empty() && kept.runs.back().state == state;
+    // Instances are drawn in ascending order, so not when that is reversed.
+    if (same && !single_ && !reversed && last == &primitive &&
+        commands_.back().firstInstance + commands_.back().instanceCount == slot) {
+      ++commands_.back().instanceCount;
+    } else {
+      const auto written = static_cast<std::uint32_t>(commands_.size());
+      if (!same || kept.runs.back().count == longest) kept.runs.push_back({slot, state, written, 0, 0});
+      ++kept.runs.back().count;
+      commands_.push_back({range.index_count, 1, range.first_index, range.vertex_offset, slot});
+    }
+    kept.runs.back().triangles += triangles;
+    last = &primitive;
   }
+  kept.commands = static_cast<std::uint32_t>(commands_.size());
 }
 
 void IndirectNodes::update(const PassContext& context, const Octree& tree,
@@ -93,24 +103,38 @@ void IndirectNodes::update(const PassContext& context, const Octree& tree,
     }
   }
   if (changed_.empty()) return;
-  Command* staged = stage(context, draws);
-  const vkr::Buffer& staging = staging_[context.frame.serial % context.frames_in_flight];
+  Command* staged = nullptr;  // only if some place cannot be written directly
   std::uint64_t from = 0;
   for (const std::uint32_t number : changed_) {
     const Octree::Chunk& chunk = tree.chunk(number);
     Kept& kept = kept_[number];
     if (kept.place.size != 0) retired_.push_back({kept.place, kept.last_used});
     kept.place = {};
-    const auto count = static_cast<std::uint32_t>(chunk.slots.size());
-    kept.place = take(context, count);
-    write(context, chunk, kept, reversed, staged + from);
-    copies_.resize(blocks_.size());
-    copies_[kept.place.block].emplace_back(from * sizeof(Command), kept.place.first * sizeof(Command),
-                                           count * sizeof(Command));
+    write(context, chunk, kept, reversed);
+    kept.place = take(context, std::max(1U, kept.commands));
+    const vkr::Buffer& block = blocks_[kept.place.block];
+    if (block.mapped() != nullptr) {
+      std::memcpy(block.mapped() + sizeof(Command) * std::uint64_t{kept.place.first}, commands_.data(),
+                  sizeof(Command) * commands_.size());
+    } else if (!commands_.empty()) {
+      if (staged == nullptr) staged = stage(context, draws);
+      std::memcpy(staged + from, commands_.data(), sizeof(Command) * commands_.size());
+      copies_.resize(blocks_.size());
+      copies_[kept.place.block].emplace_back(from * sizeof(Command),
+                                             std::uint64_t{kept.place.first} * sizeof(Command),
+                                             sizeof(Command) * commands_.size());
+      from += commands_.size();
+    }
     kept.revision = chunk.revision;
     kept.last_used = context.frame.serial;
-    from += count;
   }
+  if (from > 0) copy_staged(context);
+  counters_.written += changed_.size();
+  counters_.written_draws += draws;
+}
+
+void IndirectNodes::copy_staged(const PassContext& context) {
+  const vkr::Buffer& staging = staging_[context.frame.serial % context.frames_in_flight];
   for (std::size_t block = 0; block < copies_.size(); ++block) {
     if (copies_[block].empty()) continue;
     const vk::Buffer to = *blocks_[block].buffer;
@@ -119,9 +143,19 @@ void IndirectNodes::update(const PassContext& context, const Octree& tree,
     copies_[block].clear();
   }
   context.barriers.flush(context.frame.commands);
-  counters_.written += changed_.size();
-  counters_.written_draws += draws;
-  counters_.written_bytes += draws * sizeof(Command);
+}
+
+IndirectNodes::Kinds IndirectNodes::kinds(const Octree& tree, std::span<const std::uint32_t> chunks) const {
+  Kinds sum;
+  for (const std::uint32_t number : chunks) {
+    const Octree::Chunk& chunk = tree.chunk(number);
+    if (!fresh(number, chunk.revision)) continue;
+    ++sum.chunks;
+    sum.slots += chunk.slots.size();
+    sum.commands += kept_[number].commands;
+    sum.runs += kept_[number].runs.size();
+  }
+  return sum;
 }
 
 std::size_t IndirectNodes::draw(DrawRecorder& recorder, const Part& part) {

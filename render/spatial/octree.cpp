@@ -361,7 +361,14 @@ bool Octree::refresh(std::size_t most_slots) {
 }
 
 void Octree::refresh_chunk(Chunk& chunk) {
-  std::sort(chunk.slots.begin(), chunk.slots.end());  // the order in which slots are drawn
+  // The order in which slots are drawn. All but those that were added since are in it.
+  const auto added = std::is_sorted_until(chunk.slots.begin(), chunk.slots.end());
+  if (chunk.slots.end() - added > 16) {
+    std::sort(chunk.slots.begin(), chunk.slots.end());
+  } else {
+    for (auto i = added; i != chunk.slots.end(); ++i)
+      std::rotate(std::upper_bound(chunk.slots.begin(), i, *i), i, i + 1);
+  }
   Content sum;
   sum.slots = static_cast<std::uint32_t>(chunk.slots.size());
   for (const std::uint32_t slot : chunk.slots) {

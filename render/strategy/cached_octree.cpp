@@ -18,7 +18,7 @@ CachedOctree::CachedOctree(const StrategyContext& context) : context_(context), 
       octree_.emplace(scene_, *fitting,
                       context.octree_in_slices ? SceneOctree::Build::in_slices : SceneOctree::Build::at_once);
       if (indirect_form_) {
-        nodes_.emplace(*fitting, context.options.fail_after_buffers);
+        nodes_.emplace(*fitting, context.options.fail_after_buffers, context.options.single_draws);
       } else {
         cache_.emplace(context.device, context.options.fail_after_buffers);
       }
@@ -79,6 +79,14 @@ void CachedOctree::plan_chunks() {
   for (const std::uint32_t chunk : chunks_) counters_.drawn += tree().chunk(chunk).slots.size();
 }
 
+CachedOctree::PerDraw CachedOctree::per_draw() const {
+  if (inline_ || !nodes_) return {};
+  const IndirectNodes::Kinds kinds = nodes_->kinds(tree(), chunks_);
+  if (kinds.slots == 0) return {};
+  return {static_cast<double>(kinds.commands) / static_cast<double>(kinds.slots),
+          static_cast<double>(kinds.runs) / static_cast<double>(kinds.chunks)};
+}
+
 void CachedOctree::foresee(model::FrameFacts& facts) const {
   if (inline_) return;
   facts.visible_slots = tree().root().content.slots;
@@ -90,6 +98,9 @@ void CachedOctree::foresee(model::FrameFacts& facts) const {
   facts.in_frustum = load_in_frustum(scene_, tree(), chunks_,
                                      cull_planes(frustum_of(view_.clip_from_world), scene_.bounds_m()),
                                      ScreenArea(view_, context_.size));
+  const PerDraw each = per_draw();
+  facts.commands_per_draw = each.commands;
+  facts.runs_per_chunk = each.runs;
   facts.chunks_rerecorded = facts.draws_rerecorded = 0;
   for (const std::uint32_t number : chunks_) {
     const Octree::Chunk& chunk = tree().chunk(number);

@@ -47,6 +47,12 @@ class CachedOctree : public Strategy {
   /// After plan(), before anything is drawn: what drawing the octree would find. All of it is exact but the
   /// fragments. Fills the octree's part of `facts`.
   void foresee(model::FrameFacts& facts) const;
+  /// Of indirect draws, as far as they are kept: commands a slot, and commands of the processor a chunk; 0:
+  /// not known.
+  struct PerDraw {
+    double commands = 0, runs = 0;
+  };
+  [[nodiscard]] PerDraw per_draw() const;
   /// Draws recorded anew in the last frame, for one pass.
   [[nodiscard]] double rerecorded_draws() const {
     return static_cast<double>(counters_.recorded_draws) / recordings();

@@ -22,9 +22,12 @@ class Queries final : public QueryOctree {
 
   void choose(Kind kind, const QueryBoxes& boxes, QueryPlan& plan) override {
     rerecorded_share_ += kNewest * (changed_share() - rerecorded_share_);
+    // Changes slowly: looked at now and then.
+    if (plans_made_++ % 16 == 1) commands_per_draw_ = per_draw().commands > 0.0 ? per_draw().commands : 1.0;
     const ScreenArea screen(view(), context_.size);
-    choosers_[kind].choose({tree(), visits_, chunks_, boxes, screen, context_.costs, rerecorded_share_},
-                           plan);
+    choosers_[kind].choose(
+        {tree(), visits_, chunks_, boxes, screen, context_.costs, rerecorded_share_, commands_per_draw_},
+        plan);
   }
 
   [[nodiscard]] bool known_visible(Kind kind, std::uint32_t chunk) const override {
@@ -33,6 +36,8 @@ class Queries final : public QueryOctree {
 
   std::vector<QueryChooser> choosers_;  // by kind of pass
   double rerecorded_share_ = 0;         // alpha_n
+  double commands_per_draw_ = 1;
+  std::uint64_t plans_made_ = 0;
 };
 
 }  // namespace

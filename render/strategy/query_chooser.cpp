@@ -113,7 +113,7 @@ double QueryChooser::seconds_of(const Frame& frame, const Octree::Content& conte
   const double draws = std::max(1U, content.slots);
   double draw_s = curve.line_at(static_cast<double>(content.vertices) / draws);
   if (settings_.indirect) {
-    draw_s += c.indirect_draw_s - curve.line_at(0);
+    draw_s += frame.commands_per_draw * c.indirect_draw_s - curve.line_at(0);
   } else if (settings_.exact) {
     draw_s -= c.skipped_draw_s;
   }

@@ -39,7 +39,8 @@ class QueryChooser {
     const QueryBoxes& boxes;
     const ScreenArea& screen;
     const model::UnitCosts& costs;
-    double rerecorded_share = 0;  ///< alpha_n
+    double rerecorded_share = 0;   ///< alpha_n
+    double commands_per_draw = 1;  ///< indirect draws: slots that are instances of one command share it
   };
   enum class Phase : std::uint8_t { gathering, asking, resting };
 

@@ -50,6 +50,10 @@ std::uint32_t memory_type(const vk::PhysicalDeviceMemoryProperties& properties, 
     case MemoryUse::scene:
       wanted = Flag::eDeviceLocal;
       break;
+    case MemoryUse::written:
+      needed = Flag::eDeviceLocal;
+      wanted = Flag::eHostVisible | Flag::eHostCoherent;
+      break;
     case MemoryUse::upload:
       needed = Flag::eHostVisible | Flag::eHostCoherent;
       break;
@@ -89,7 +93,7 @@ void Memory::take_from_device(std::uint64_t bytes) {
 Allocation Memory::allocate(const vk::MemoryRequirements& needs, MemoryUse use, bool image) {
   const std::uint32_t type = memory_type(device_.memory_properties, needs.memoryTypeBits, use);
   if (use != MemoryUse::scene) {
-    if (use == MemoryUse::device) take_from_device(needs.size);
+    if (use == MemoryUse::device || use == MemoryUse::written) take_from_device(needs.size);
     return allocate_from(type, needs, image);
   }
   try {
@@ -122,7 +126,8 @@ Allocation Memory::allocate_from(std::uint32_t type, const vk::MemoryRequirement
   const std::uint64_t bytes = own_block ? needs.size : kMemoryBlockBytes;
   Allocation::Block block{FreeList(bytes)};
   block.memory = vk::raii::DeviceMemory(device_.device, vk::MemoryAllocateInfo(bytes, type));
-  if (device_.memory_properties.memoryTypes[type].propertyFlags & Flag::eHostVisible)
+  constexpr vk::MemoryPropertyFlags kMapped = Flag::eHostVisible | Flag::eHostCoherent;
+  if ((device_.memory_properties.memoryTypes[type].propertyFlags & kMapped) == kMapped)
     block.mapped = static_cast<std::byte*>(block.memory.mapMemory(0, VK_WHOLE_SIZE));
   block.type = type;
   block.image = image;

@@ -15,6 +15,7 @@ namespace scenegen::render::vkr {
 
 enum class MemoryUse : std::uint8_t {
   device,    ///< fastest for the device
+  written,   ///< the same, and mapped where the device has such memory: written once, by the processor
   scene,     ///< the same, but of the host when the device has no more (D 2.4)
   upload,    ///< written by the processor, mapped
   readback,  ///< read by the processor, mapped, cached where possible

@@ -336,6 +336,21 @@ TEST_CASE("indirect draws change states as seldom as inline does; kept command b
   CHECK(of_flat.state_changes > 1);
   CHECK(of_indirect.state_changes == of_flat.state_changes);
   CHECK(of_kept.state_changes > of_kept.chunks);
+
+  // Slots that follow one another in a chunk are instances of one command, unless that is not wanted.
+  RendererOptions options = Way{"octree", NodeForm::indirect}.options();
+  options.how.objects_per_node = 500;
+  const Run instances = run_path(path, options);
+  options.how.single_draws = true;
+  const Run single = run_path(path, options);
+  const FrameReport& of_single = single.frames.back().report;
+  const FrameReport& of_instances = instances.frames.back().report;
+  CHECK(of_single.draws == of_single.drawn);
+  CHECK(of_instances.drawn == of_single.drawn);
+  CHECK(2 * of_instances.draws < of_single.draws);
+  CHECK(of_instances.triangles == of_single.triangles);
+  const Difference d = difference(instances, single, single);
+  CHECK(d.depth + d.ids + d.color == 0);
 }
 
 TEST_CASE("octree draws the same with full barriers") {
