@@ -60,6 +60,7 @@ class Sample {
     textured_ += scene_.batches()[primitive.batch].state.texture_set != 0 ? 1.0 : 0.0;
   }
 
+  [[nodiscard]] double vertices() const { return vertices_; }
   [[nodiscard]] model::Load scaled(std::size_t draws) const {
     model::Load load;
     if (taken_ == 0) return load;
@@ -221,16 +222,22 @@ void add_scene_facts(const DrawScene& scene, const ScreenArea& screen, model::Fr
 model::Load load_in_frustum(const DrawScene& scene, const Octree& tree, std::span<const std::uint32_t> chunks,
                             const CullPlanes& planes, const ScreenArea& screen) {
   std::size_t count = 0;
-  for (const std::uint32_t number : chunks) count += tree.chunk(number).slots.size();
+  double vertices = 0;
+  for (const std::uint32_t number : chunks) {
+    count += tree.chunk(number).slots.size();
+    vertices += static_cast<double>(tree.chunk(number).content.vertices);
+  }
   Sample sample(scene, screen);
   Steps steps(count);
   std::size_t passed = 0;
   std::size_t inside = 0;
+  double sampled_vertices = 0;
   std::size_t taken = 0;
   for (const std::uint32_t number : chunks) {
     const std::vector<std::uint32_t>& slots = tree.chunk(number).slots;
     for (; steps.below(passed + slots.size()); steps.next(), ++taken) {
       const std::uint32_t slot = slots[steps.at() - passed];
+      sampled_vertices += scene.primitive(slot).work.vertices;
       const auto all = planes.all();
       const Box box = scene.boxes().get(slot);
       if (std::any_of(all.begin(), all.end(),
@@ -241,7 +248,11 @@ model::Load load_in_frustum(const DrawScene& scene, const Octree& tree, std::spa
     }
     passed += slots.size();
   }
-  return sample.scaled(taken == 0 ? 0 : inside * count / taken);
+  model::Load load = sample.scaled(taken == 0 ? 0 : inside * count / taken);
+  // How many there are in the chunks is known, and only a share is to be estimated: where few slots have most
+  // of the vertices, the sample alone says 40 % too much or too little from frame to frame.
+  if (sampled_vertices > 0.0) load.vertices = vertices * sample.vertices() / sampled_vertices;
+  return load;
 }
 
 }  // namespace scenegen::render

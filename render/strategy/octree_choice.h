@@ -15,6 +15,11 @@ namespace scenegen::render {
 /// of it in vkQueueSubmit, whatever is in it; but a change records all of a chunk again (docs/BENCHMARKS.md).
 constexpr std::uint32_t kObjectsPerNode = 200;
 
+/// The same of indirect draws: each run of one state is a command of the processor, 0.2 us of an NVIDIA
+/// H200's time whatever is in it, and larger chunks have longer runs of instances. From above test set 32
+/// takes it 13.8 ms with 200, 12.9 with 500; queries lose nothing (docs/BENCHMARKS.md).
+constexpr std::uint32_t kObjectsPerIndirectNode = 500;
+
 /// Seen on lavapipe; 150 B a node and 120 B a chunk are ours.
 constexpr model::CommandMemory kSecondaryMemory{270, 6900, 170};
 /// Indirect draws: 20 B each, in places that are a sixteenth too large in the mean.
@@ -26,13 +31,14 @@ constexpr model::CommandMemory kIndirectMemory{270, 0, 22};
 /// are at the start, and indirect draws where exact queries would not be possible otherwise.
 [[nodiscard]] bool indirect_nodes(const StrategyContext& context);
 
-/// The number asked for, or the smallest from kObjectsPerNode on that fits; none when it does not fit.
+/// The number asked for, or the smallest from those above on that fits; none when it does not fit.
 [[nodiscard]] inline std::optional<std::uint32_t> choose_objects_per_node(const StrategyContext& context) {
   const StrategyOptions& o = context.options;
   const std::uint64_t objects = context.scene.solid_end();
   const model::CommandMemory& units = indirect_nodes(context) ? kIndirectMemory : kSecondaryMemory;
   if (o.objects_per_node == 0)
-    return model::objects_per_node(objects, o.octree_bytes, units, kObjectsPerNode);
+    return model::objects_per_node(objects, o.octree_bytes, units,
+                                   indirect_nodes(context) ? kObjectsPerIndirectNode : kObjectsPerNode);
   const double bytes = model::octree_bytes(objects, o.objects_per_node, units);
   return bytes <= static_cast<double>(o.octree_bytes) ? std::optional(o.objects_per_node) : std::nullopt;
 }
