@@ -89,6 +89,8 @@ TEST_CASE("a device that is lost ends the program with a line; whole pictures st
   check_no_device(play(call, "any:40:-2", ""), {"device '", "OutOfDeviceMemory", "need less"});
   check_no_device(play(call, "any:41:-1", ""), {"device '", "OutOfHostMemory", "needs less"});
   check_no_device(play(call, "vkCreateDevice:1:-3", ""), {"Vulkan: ", "InitializationFailed"});
+  check_no_device(play(call, "vkCreateShaderModule:3:-3", ""),
+                  {"device '", "ShaderModule", "InitializationFailed"});
   ::setenv("XDG_CACHE_HOME", folder.file("cache").c_str(), 1);
   check_no_device(play("calibrate --quick --size 32x18 --quiet", "vkQueueSubmit:60:-4", ""), {"was lost"});
   ::unsetenv("XDG_CACHE_HOME");
