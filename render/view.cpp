@@ -201,39 +201,51 @@ bool intersects(const Frustum& frustum, const Box& box) {
 
 namespace {
 
-using Polygon = std::vector<glm::vec3>;
+/// Room for `kMost` points, so that a frame allocates nothing.
+template <std::size_t kMost>
+struct Points {
+  std::array<glm::vec3, kMost> points;
+  std::size_t count = 0;
+
+  void add(const glm::vec3& p) { points[count++] = p; }
+  [[nodiscard]] const glm::vec3* begin() const { return points.data(); }
+  [[nodiscard]] const glm::vec3* end() const { return points.data() + count; }
+};
+/// A face of a box cut by six planes, each of which adds at most one corner to what is convex.
+using Polygon = Points<16>;
 
 /// Sutherland-Hodgman against one plane n.p + d >= 0.
 Polygon clipped(const Polygon& in, const glm::vec4& plane) {
   Polygon out;
-  for (std::size_t i = 0; i < in.size(); ++i) {
-    const glm::vec3& a = in[i];
-    const glm::vec3& b = in[(i + 1) % in.size()];
+  for (std::size_t i = 0; i < in.count; ++i) {
+    const glm::vec3& a = in.points[i];
+    const glm::vec3& b = in.points[(i + 1) % in.count];
     const float da = glm::dot(glm::vec3(plane), a) + plane.w;
     const float db = glm::dot(glm::vec3(plane), b) + plane.w;
-    if (da >= 0.0F) out.push_back(a);
-    if ((da >= 0.0F) != (db >= 0.0F)) out.push_back(a + (b - a) * (da / (da - db)));
+    // Rounding may bend what was convex: then it has more corners, of which the last ones are left out.
+    if (da >= 0.0F && out.count < 15) out.add(a);
+    if ((da >= 0.0F) != (db >= 0.0F) && out.count < 16) out.add(a + (b - a) * (da / (da - db)));
   }
   return out;
 }
 
 /// Corner points of box and frustum cut with each other (the frustum's far end is bounded by the box).
-std::vector<glm::vec3> seen_points(const View& view, const Box& box) {
+Points<100> seen_points(const View& view, const Box& box) {
   const Frustum frustum = frustum_of(view.clip_from_world);
   const std::array<glm::vec3, 8> c = corners(box);
   constexpr unsigned kFaces[6][4] = {{0, 2, 6, 4}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                      {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 5, 7, 6}};
-  std::vector<glm::vec3> out;
+  Points<100> out;
   for (const auto& face : kFaces) {
-    Polygon polygon{c[face[0]], c[face[1]], c[face[2]], c[face[3]]};
+    Polygon polygon;
+    for (const unsigned corner : face) polygon.add(c[corner]);
     for (const glm::vec4& plane : frustum.planes) {
       if (glm::dot(glm::vec3(plane), glm::vec3(plane)) > 0.0F) polygon = clipped(polygon, plane);
     }
-    out.insert(out.end(), polygon.begin(), polygon.end());
+    for (const glm::vec3& p : polygon) out.add(p);
   }
   const glm::vec3 eye = view.eye_m();
-  if (glm::all(glm::greaterThanEqual(eye, box.lo)) && glm::all(glm::lessThanEqual(eye, box.hi)))
-    out.push_back(eye);
+  if (glm::all(glm::greaterThanEqual(eye, box.lo)) && glm::all(glm::lessThanEqual(eye, box.hi))) out.add(eye);
   return out;
 }
 

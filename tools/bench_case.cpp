@@ -1,9 +1,9 @@
 #include "tools/bench_case.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
-#include <deque>
 
 #include "render/strategy_names.h"
 #include "tools/frame_fields.h"
@@ -198,8 +198,15 @@ Result<BenchRun> BenchSeat::run(const std::vector<double>& moments, std::uint32_
   pass.next = -static_cast<std::int64_t>(warm_up);
   const std::int64_t end = static_cast<std::int64_t>(moments.size()) + renderer_->most_in_flight() - 1;
   const auto total = static_cast<std::size_t>(end - pass.next);
-  std::deque<double> seek_ms;
-  std::deque<render::View> views;
+  // Of the frames at work, by their number: nothing here allocates once frames are measured.
+  constexpr std::size_t kRing = 4;
+  struct AtWork {
+    double seek_ms = 0;
+    render::View view;
+  };
+  std::array<AtWork, kRing> ring;
+  std::size_t submitted = 0;
+  std::size_t finished = 0;
   struct Traced {  // rows are made of them when nothing is measured any more
     render::FrameReport report;
     render::View view;
@@ -211,10 +218,9 @@ Result<BenchRun> BenchSeat::run(const std::vector<double>& moments, std::uint32_
   const auto finish_one = [&]() -> Result<void> {
     if (Result<void> done = renderer_->finish(result); !done) return done;
     if (fresh && !pass.run.start_ms) pass.run.start_ms = since_scene.seconds() * 1e3;
-    if (pass.finished(result.report, seek_ms.front()) && trace != nullptr)
-      traced.push_back({result.report, views.front(), seek_ms.front()});
-    seek_ms.pop_front();
-    views.pop_front();
+    const AtWork& frame = ring[finished++ % kRing];
+    if (pass.finished(result.report, frame.seek_ms) && trace != nullptr)
+      traced.push_back({result.report, frame.view, frame.seek_ms});
     on_frame(total - static_cast<std::size_t>(end - pass.next), total);
     return {};
   };
@@ -225,9 +231,9 @@ Result<BenchRun> BenchSeat::run(const std::vector<double>& moments, std::uint32_
     const Stopwatch watch;
     const double time_s = moments[moment_of_frame(i, moments.size())];
     const timeline::ChangeSet& changes = player_->seek(time_s);
-    seek_ms.push_back(watch.seconds() * 1e3);
-    views.push_back(camera_.view(*player_, time_s));
-    if (Result<void> done = renderer_->submit(changes, *player_, views.back()); !done)
+    AtWork& frame = ring[submitted++ % kRing];
+    frame = {watch.seconds() * 1e3, camera_.view(*player_, time_s)};
+    if (Result<void> done = renderer_->submit(changes, *player_, frame.view); !done)
       return forward_error(done);
   }
   while (renderer_->in_flight() > 0) {

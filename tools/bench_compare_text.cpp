@@ -78,7 +78,7 @@ std::string comparison_text(const BenchComparison& comparison) {
       rows.push_back(cells(comparison.cases[end]));
       add_counters(comparison.cases[end], counters);
     }
-    out += "\n" + name + aligned(rows) + counters;
+    out.append("\n").append(name).append(aligned(rows)).append(counters);
     begin = end;
   }
   add_list("only in A:", comparison.only_a, out);

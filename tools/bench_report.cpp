@@ -168,8 +168,10 @@ DocumentTable member_table(const BenchView& view, const std::string& id, const s
   for (const std::string& name : names) out.columns.push_back({name, name, unit});
   for (const Row& row : view.rows) {
     std::vector<Cell>& cells = out.rows.emplace_back(std::vector<Cell>{row.label});
-    for (const std::string& name : names)
-      cells.push_back(cell(at(*row.json, member + "/" + name + (suffix.empty() ? "" : "/" + suffix))));
+    for (const std::string& name : names) {
+      const ordered_json value = at(at(*row.json, member), name);
+      cells.push_back(cell(suffix.empty() ? value : at(value, suffix)));
+    }
   }
   return out;
 }
@@ -262,6 +264,7 @@ std::string summary(const std::vector<BenchView>& views) {
     }
   }
   std::vector<std::pair<int, std::string>> order;
+  order.reserve(wins.size());
   for (const auto& [name, count] : wins) order.emplace_back(-count, name);
   std::sort(order.begin(), order.end());
   std::string out;
@@ -305,12 +308,15 @@ DocumentSection bench_section_of_all(std::span<const ordered_json> results, cons
       out.blocks.emplace_back(std::move(chart));
   }
   for (std::size_t v = 0; v < views.size(); ++v) {
-    const std::string tail = "-" + std::to_string(v + 1);
-    out.blocks.emplace_back(frame_table(views[v], id + "-frame" + tail));
-    if (Chart chart = time_chart(views[v], id + "-time" + tail); !chart.series.empty())
+    const auto block = [&, number = std::to_string(v + 1)](const char* what) {
+      std::string out_id = id;
+      return out_id.append("-").append(what).append("-").append(number);
+    };
+    out.blocks.emplace_back(frame_table(views[v], block("frame")));
+    if (Chart chart = time_chart(views[v], block("time")); !chart.series.empty())
       out.blocks.emplace_back(std::move(chart));
     for (DocumentTable table :
-         {stage_table(views[v], id + "-stages" + tail), counter_table(views[v], id + "-counters" + tail)}) {
+         {stage_table(views[v], block("stages")), counter_table(views[v], block("counters"))}) {
       if (table.columns.size() > 1) out.blocks.emplace_back(std::move(table));
     }
   }
@@ -319,6 +325,34 @@ DocumentSection bench_section_of_all(std::span<const ordered_json> results, cons
 
 DocumentSection bench_section(const ordered_json& results) {
   return bench_section_of_all(std::span(&results, 1));
+}
+
+Document bench_document(std::span<const ordered_json> results) {
+  Document out{"Benchmark", {}, {bench_section_of_all(results)}};
+  const ordered_json& first = results.front();
+  const auto add = [&out](const char* name, std::string value) {
+    if (!value.empty()) out.facts.emplace_back(name, std::move(value));
+  };
+  add("program", join(std::array{text(first, "program/name"), text(first, "program/version")}, " "));
+  add("compiler", text(first, "program/compiler"));
+  add("machine", text(first, "machine/processor"));
+  add("system", text(first, "machine/system"));
+  for (const ordered_json& device : at(first, "devices")) add("device", text(device, "name"));
+  for (const ordered_json& device : at(first, "devices")) add("driver", text(device, "driver"));
+  const ordered_json scenes = at(first, "scenes");
+  for (const ordered_json& scene : scenes) {
+    std::string line = base_name(text(scene, "file"));
+    for (const char* name : {"objects", "seed"}) {
+      const ordered_json value = at(scene, name);
+      if (value.is_number()) line.append(", ").append(name).append(" ").append(value.dump());
+    }
+    add("scene", line);
+  }
+  std::vector<std::string> words;
+  for (const ordered_json& word : at(first, "arguments"))
+    words.push_back(word.is_string() ? word.get<std::string>() : "");
+  add("arguments", join(words, " "));
+  return out;
 }
 
 DocumentSection comparison_section(const BenchComparison& c, const std::string& id) {

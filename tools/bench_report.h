@@ -17,6 +17,9 @@ namespace scenegen::tools {
                                                    const std::string& id = "bench");
 [[nodiscard]] DocumentSection bench_section(const nlohmann::ordered_json& results);
 
+/// That section with the facts of the first of the results; not of nothing.
+[[nodiscard]] Document bench_document(std::span<const nlohmann::ordered_json> results);
+
 [[nodiscard]] DocumentSection comparison_section(const BenchComparison& comparison,
                                                  const std::string& id = "comparison");
 

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "tools/bench_report.h"
 #include "tools/output.h"
 #include "tools/report/read_results.h"
 #include "tools/report/write.h"
@@ -51,11 +52,22 @@ Result<RunReport> read_all(const ReportRequest& r, std::vector<std::string>& fil
     files.insert(files.end(), found->begin(), found->end());
   }
   RunReport out{r.title, {}};
+  std::vector<nlohmann::ordered_json> benches;
   for (const std::string& file : files) {
+    Result<std::string> schema = results_schema(file);
+    if (!schema) return forward_error(schema);
+    if (*schema == kBenchSchema) {
+      auto bench = read_bench(file);
+      if (!bench) return forward_error(bench);
+      benches.push_back(std::move(*bench));
+      continue;
+    }
     Result<ReportRun> run = read_results(file);
     if (!run) return forward_error(run);
     out.runs.push_back(std::move(*run));
   }
+  // Benchmarks stand together, so that other renderers' figures are beside ours.
+  if (!benches.empty()) out.runs.push_back({bench_document(benches), ""});
   if (out.title.empty()) {
     const std::string& first = out.runs.front().document.title;
     const bool same = std::all_of(out.runs.begin(), out.runs.end(),

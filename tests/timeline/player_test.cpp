@@ -6,9 +6,9 @@
 #include <cstring>
 #include <limits>
 
-#include "counting_allocator.h"
 #include "naive_player.h"
 #include "random_scene.h"
+#include "tests/support/counting_allocator.h"
 
 namespace scenegen::timeline {
 namespace {
@@ -488,12 +488,12 @@ TEST_CASE("nothing is allocated after construction") {
   for (const Scene& scene : {random.make(5000, 300), many_events()}) {
     Player p(compile(scene));
     std::size_t changed = 0;
-    const std::uint64_t before = test::allocation_count();
+    const std::uint64_t before = scenegen::test::allocation_count();
     for (int i = 0; i < 500; ++i) {
       changed += p.seek(random_time(random)).count();
       changed += p.advance(static_cast<double>(random.in(-0.5F, 0.5F))).count();
     }
-    REQUIRE(test::allocation_count() == before);
+    REQUIRE(scenegen::test::allocation_count() == before);
     REQUIRE(changed > 500);
   }
 }

@@ -61,6 +61,16 @@ Result<void> check_version(const std::string& file, const ordered_json& json) {
 
 }  // namespace
 
+Result<std::string> results_schema(const std::string& file) {
+  const Result<std::string> text = read_text(file);
+  if (!text) return tl::unexpected(text.error());
+  const Result<ordered_json> json = parse(file, *text);
+  if (!json) return tl::unexpected(json.error());
+  std::string schema = text_of(*json, "schema");
+  if (schema.empty()) return fail(ErrorKind::bad_input, file, "is no results file: it has no schema");
+  return schema;
+}
+
 Result<ReportRun> read_results(const std::string& file) {
   const Result<std::string> text = read_text(file);
   if (!text) return tl::unexpected(text.error());
@@ -69,7 +79,7 @@ Result<ReportRun> read_results(const std::string& file) {
   const std::string schema = text_of(*json, "schema");
   if (schema.empty()) return fail(ErrorKind::bad_input, file, "is no results file: it has no schema");
   if (schema != kExperiment) {
-    const std::array<std::string, 1> known{kExperiment};
+    const std::array<std::string, 2> known{kExperiment, "sceneplay/bench"};  // the latter: bench_report.h
     return fail(ErrorKind::bad_input, file + ": /schema", unknown_word("schema", schema, known));
   }
   if (auto good = check_version(file, *json); !good) return forward_error(good);

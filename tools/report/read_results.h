@@ -9,6 +9,8 @@
 
 namespace scenegen::tools {
 
+/// What a file says it is: "sceneplay/experiment". Errors: it cannot be read, is no JSON, or says nothing.
+[[nodiscard]] Result<std::string> results_schema(const std::string& file);
 /// One file: "sceneplay/experiment" 1. Errors name file and JSON pointer.
 [[nodiscard]] Result<ReportRun> read_results(const std::string& file);
 /// The results files that a path means: itself, or those of a folder, else those of its folders, by name.
