@@ -42,8 +42,7 @@ class Runs {
     o.how.node_form = form_;
     o.how.single_draws = true;  // units are of a draw
     o.shadows = shadows;
-    // For what the model is told of the scenes.
-    o.predictions = std::string_view(strategy) == "inline" || std::string_view(strategy) == "queries-all";
+    o.predictions = std::string_view(strategy) == "inline";  // for what the model is told of the scenes
     MeasureOptions how = how_;
     how.budget_s = budget_s_ * share;
     how.settle = std::string_view(strategy).find("queries") != std::string_view::npos ? 3
@@ -80,7 +79,7 @@ Result<void> measure_octrees(Runs& runs, const Run& flat, bool quick, Fit& fit) 
       quick ? std::vector<std::uint32_t>{kAsked} : std::vector<std::uint32_t>{10, kAsked, 1000};
   for (const std::uint32_t n : sizes) {
     Result<Run> run = runs.run("octree", n, false, quick ? 0.2 : 0.09, [&](const Step& s) {
-      return boxes(s) || (n == kAsked && (s.trial == Trial::hidden_boxes || s.trial == Trial::piles));
+      return boxes(s) || (n == kAsked && s.trial == Trial::hidden_boxes);
     });
     if (!run) return forward_error(run);
     kept.emplace_back(n, std::move(*run));
@@ -90,13 +89,11 @@ Result<void> measure_octrees(Runs& runs, const Run& flat, bool quick, Fit& fit) 
                               [&](const Step& s) { return boxes(s) || s.trial == Trial::hidden_boxes; });
   if (!each) return forward_error(each);
   Result<Run> asking = runs.run("queries-all", kAsked, false, quick ? 0.1 : 0.07, [](const Step& s) {
-    return s.trial == Trial::empty || s.trial == Trial::hidden_boxes ||
-           (s.trial == Trial::piles && s.layers < 4.0);
+    return s.trial == Trial::empty || s.trial == Trial::hidden_boxes;
   });
   if (!asking) return forward_error(asking);
   fit.queries(flat, *each);
   const auto same = std::find_if(kept.begin(), kept.end(), [](const auto& k) { return k.first == kAsked; });
-  fit.asked_fragments(same->second, *asking);
   fit.second_part(same->second, *asking);
   if (quick) return {};
   runs.use(NodeForm::indirect);

@@ -387,23 +387,13 @@ void Fit::queries(const Run& flat, const Run& each) {
     count.push_back(asked(i)), wall_s.push_back(each.device_s(i));
   const Line hidden = fit_line(count, wall_s);
   set("queryS", c_.query_s, hidden.slope);
+  for (const std::size_t i : flat.of(Trial::layers)) {
+    if (flat.step(i).layers == 1 && flat.step(i).share == 1.0)
+      set("askedFragmentS", c_.asked_fragment_s, (hidden.offset - flat.device_s(i)) / pixels_);
+  }
   const double seen_s =
       slope(each, Trial::boxes, asked, [&](std::size_t i) { return each.device_s(i) - flat.device_s(i); });
   set("seenQueryS", c_.seen_query_s, seen_s - c_.query_s);
-}
-
-/// Boxes in view of which none is hidden, asked about by chunks, against the same not asked about.
-void Fit::asked_fragments(const Run& kept, const Run& asking) {
-  double fragments = 0.0;
-  double more_s = 0.0;
-  for (const std::size_t i : asking.of(Trial::piles)) {
-    const FrameReport& r = asking.results[i].report;
-    if (r.believed_hidden > 0 || r.queries == 0 || kept.results[i].samples == 0) continue;
-    fragments += r.facts.all_asked_fragments;
-    more_s += asking.device_s(i) - kept.device_s(i) -
-              static_cast<double>(r.queries) * (c_.query_s + c_.seen_query_s);
-  }
-  if (fragments > 0.0) set("askedFragmentS", c_.asked_fragment_s, more_s / fragments - c_.hidden_fragment_s);
 }
 
 /// Boxes behind a wall, asked about and skipped, against the same drawn from the same kept commands: the wall

@@ -49,8 +49,6 @@ class Fit {
   void kept(const Run& flat, const std::vector<std::pair<std::uint32_t, Run>>& runs);
   void listed(const Run& run);
   void queries(const Run& flat, const Run& each);
-  /// The same boxes from the same kept commands, without queries and with one for each chunk.
-  void asked_fragments(const Run& kept, const Run& asking);
   void second_part(const Run& kept, const Run& asking);
   void indirect(const Run& flat, const Run& fine, const Run& coarse);
   void finish();

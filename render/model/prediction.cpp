@@ -210,12 +210,11 @@ GpuStages device_stages(const Load& load, double screen_pixels, const UnitCosts&
   return out;
 }
 
-double queries_device_s(double asked, double hidden, double fragments, const UnitCosts& c) {
+double queries_device_s(double asked, double hidden, double fragments, double covered, const UnitCosts& c) {
   if (asked <= 0.0) return 0.0;
-  const double seen = std::max(0.0, asked - hidden);
-  const double passing = fragments * seen / asked;
+  const double passing = hidden < asked ? std::min(fragments, covered) : 0.0;
   const double failing = 2.0 * fragments - passing;
-  return asked * c.query_s + seen * c.seen_query_s + passing * c.asked_fragment_s +
+  return asked * c.query_s + std::max(0.0, asked - hidden) * c.seen_query_s + passing * c.asked_fragment_s +
          failing * c.hidden_fragment_s;
 }
 
@@ -254,7 +253,8 @@ Prediction predict(Method method, const FrameFacts& f, const UnitCosts& c, const
   p.draw_device_s = gpu_s(stages, {}, 0.0, c.stage_overlap) +
                     (way.kept ? nodes_device_s(taken, c, options.indirect_nodes) : 0.0);
   if (asks) {
-    p.query_device_s = queries_device_s(n.queried_nodes, taken.found, taken.asked_area, c);
+    const double covered = shaded_fragments(all, f.screen_pixels).covered_share * f.screen_pixels;
+    p.query_device_s = queries_device_s(n.queried_nodes, taken.found, taken.asked_area, covered, c);
     if (taken.hidden > 0.0) p.query_device_s += c.second_part_device_s;
   }
   const double sky_s =

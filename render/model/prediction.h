@@ -115,9 +115,10 @@ struct Shaded {
 [[nodiscard]] GpuStages device_stages(const Load& load, double screen_pixels, const UnitCosts& costs);
 
 /// (2.19) to (2.21) of queries: `asked`, of which `hidden` find nothing, and the fragments of their boxes.
-/// Boxes do not hide each other: of those that are seen, the faces towards the eye pass the depth test; all
-/// others fail it.
-[[nodiscard]] double queries_device_s(double asked, double hidden, double fragments, const UnitCosts& costs);
+/// What is seen of those is no more than the `covered` fragments of the picture; the rest, and the faces that
+/// look away, fail the depth test.
+[[nodiscard]] double queries_device_s(double asked, double hidden, double fragments, double covered,
+                                      const UnitCosts& costs);
 
 /// What (2.10) to (2.12) give for a way of drawing; stages that it does not have are 0. Mended: T_0 is added
 /// (D's own predictions end there), sky that is covered is taken off it, and (2.11), (2.12) take as much of

@@ -119,8 +119,8 @@ TEST_CASE("predictions: ways that record each frame") {
   CHECK(asking.record_s == Approx(40 * 11));
   CHECK(asking.queries_cpu_s == Approx(100 * (23 + 29)));
   CHECK(asking.draw_device_s == Approx(40 * kDraw));
-  // 40 are seen, with as large a share of the fragments; the other faces of the boxes fail, and all of 60.
-  CHECK(asking.query_device_s == Approx(100 * 43 + 40 * 3 + 400 * 1.5 + 1600 * 0.5));
+  // Some are seen, so 1000 fragments of boxes are; the other faces fail.
+  CHECK(asking.query_device_s == Approx(100 * 43 + 40 * 3 + 1000 * 1.5 + 1000 * 0.5));
 }
 
 TEST_CASE("predictions: ways that keep commands") {
@@ -136,19 +136,18 @@ TEST_CASE("predictions: ways that keep commands") {
   CHECK(all.secondaries_s == Approx(kSecondaries));  // hidden ones are executed all the same
   // Those of the second part have nothing to be beside.
   CHECK(all.draw_device_s == Approx(60 * kDraw + 0.25 * 4 * 31 + 8 * 31 + 120 * 4));
-  const double passing = 1100 * 4 / 12.0;
-  CHECK(all.query_device_s == Approx(12 * 43 + 4 * 3 + passing * 1.5 + (2 * 1100 - passing) * 0.5 + 2000));
+  CHECK(all.query_device_s == Approx(12 * 43 + 4 * 3 + 1000 * 1.5 + 1200 * 0.5 + 2000));
 
   const Prediction some = predict(Method::queries, facts(), units(), kOneByOne);
   CHECK(some.queries_cpu_s == Approx(5 * (23 + 29) + 1000));
   CHECK(some.draw_device_s == Approx(135 * kDraw + 0.25 * 9 * 31 + 3 * 31 + 45 * 4));
-  CHECK(some.query_device_s == Approx(5 * 43 + 2 * 3 + 8 * 1.5 + 32 * 0.5 + 2000));
+  CHECK(some.query_device_s == Approx(5 * 43 + 2 * 3 + 20 * 1.5 + 20 * 0.5 + 2000));
 
   const Prediction late = predict(Method::queries, facts(), units(), {1, false, false});
   CHECK(late.queries_cpu_s == Approx(5 * (23 + 29)));
   CHECK(late.secondaries_s == Approx(9 * 105));
   CHECK(late.draw_device_s == Approx(135 * kDraw + 0.25 * 9 * 31));
-  CHECK(late.query_device_s == Approx(5 * 43 + 2 * 3 + 8 * 1.5 + 32 * 0.5));
+  CHECK(late.query_device_s == Approx(5 * 43 + 2 * 3 + 20 * 1.5 + 20 * 0.5));
 
   const Prediction indirect = predict(Method::queries, facts(), units(), {1, true, true});
   CHECK(indirect.record_s == Approx(30 * 19));
