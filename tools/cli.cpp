@@ -258,6 +258,26 @@ Result<std::string> read_small_file(const std::string& path) {
   return text;
 }
 
+}  // namespace
+
+Result<nlohmann::ordered_json> read_config_file(const std::string& path) {
+  auto text = read_small_file(path);
+  if (!text) return forward_error(text);
+  nlohmann::ordered_json document;
+  try {
+    document = nlohmann::ordered_json::parse(*text);
+  } catch (const nlohmann::json::exception& error) {
+    std::string what = error.what();  // "[json.exception.parse_error.101] parse error at line 1, ..."
+    what.erase(0, what.find("] ") == std::string::npos ? 0 : what.find("] ") + 2);
+    std::replace(what.begin(), what.end(), '\n', ' ');
+    return fail(ErrorKind::bad_input, path, what);
+  }
+  if (!document.is_object()) return fail(ErrorKind::bad_input, path, "is not a JSON object");
+  return document;
+}
+
+namespace {
+
 /// The text that a JSON value stands for on the command line; none for null, arrays and objects.
 std::optional<std::string> option_text(const nlohmann::ordered_json& value, const Option& option) {
   if (value.is_string()) return value.get<std::string>();
@@ -273,21 +293,9 @@ std::optional<std::string> option_text(const nlohmann::ordered_json& value, cons
 Result<void> Options::State::read_config() {
   const Option* option = find("--config");
   if (option == nullptr || option->handle->count() == 0) return {};
-  const std::string& path = option->handle->results().back();
-  auto text = read_small_file(path);
-  if (!text) return forward_error(text);
-  nlohmann::ordered_json document;
-  try {
-    document = nlohmann::ordered_json::parse(*text);
-  } catch (const nlohmann::json::exception& error) {
-    std::string what = error.what();  // "[json.exception.parse_error.101] parse error at line 1, ..."
-    what.erase(0, what.find("] ") == std::string::npos ? 0 : what.find("] ") + 2);
-    std::replace(what.begin(), what.end(), '\n', ' ');
-    return fail(ErrorKind::bad_input, path, what);
-  }
-  if (!document.is_object()) return fail(ErrorKind::bad_input, path, "is not a JSON object");
-  config_path = path;
-  return take_config(document);
+  config_path = option->handle->results().back();
+  const auto document = read_config_file(config_path);
+  return document ? take_config(*document) : tl::unexpected(document.error());
 }
 
 Result<void> Options::State::take_config(const nlohmann::ordered_json& document) {
@@ -341,6 +349,41 @@ Result<void> Options::refuse(std::span<const Conflict> conflicts) const {
   return {};
 }
 
+Result<void> Options::set_content(const std::string& key, const nlohmann::ordered_json& value) {
+  Option* option = state_->find("--" + key);
+  if (option == nullptr || option->role != Role::content) {
+    std::vector<std::string> names;
+    for (const Group& group : state_->groups) {
+      for (const Option& other : group.options) {
+        if (other.role == Role::content) names.push_back(other.long_name.substr(2));
+      }
+    }
+    const std::string nearest = nearest_word(key, names);
+    return fail(ErrorKind::usage, "",
+                (option == nullptr ? "unknown option" : "decides nothing of a scene's content") +
+                    (nearest.empty() || option != nullptr ? "" : " (did you mean '" + nearest + "'?)"));
+  }
+  const std::optional<std::string> text = option_text(value, *option);
+  if (!text) return fail(ErrorKind::usage, "", "is neither text, nor a number, nor true or false");
+  return take_text(*option, *text, "");
+}
+
+namespace {
+
+nlohmann::ordered_json typed(const Option& option, const std::string& text) {
+  if (option.value.kind == Value::Kind::boolean) return text == "on" || text == "true";
+  if (option.value.kind == Value::Kind::number) return nlohmann::ordered_json::parse(text);
+  return text;
+}
+
+}  // namespace
+
+nlohmann::ordered_json Options::config_value(std::string_view key) const {
+  const Option* option = state_->find("--" + std::string(key));
+  const std::string text = option == nullptr ? std::string() : option->value.spell();
+  return text.empty() ? nlohmann::ordered_json() : typed(*option, text);
+}
+
 std::vector<std::string> Options::canonical_arguments() const {
   std::vector<std::string> out;
   for (const Group& group : state_->groups) {
@@ -371,14 +414,7 @@ nlohmann::ordered_json Options::config(std::span<const Conflict> left_out) const
         out[option.long_name.substr(2)] = option.value.spell_all();
       const std::string text = option.value.spell();
       if (!wanted || refused || text.empty()) continue;
-      auto& member = out[option.long_name.substr(2)];
-      if (option.value.kind == Value::Kind::boolean) {
-        member = text == "on" || text == "true";
-      } else if (option.value.kind == Value::Kind::number) {
-        member = nlohmann::ordered_json::parse(text);
-      } else {
-        member = text;
-      }
+      out[option.long_name.substr(2)] = typed(option, text);
     }
   }
   return out;

@@ -132,6 +132,12 @@ class Options {
   /// options.
   [[nodiscard]] Result<Action> parse(std::span<const std::string> arguments);
 
+  /// Takes the value of one option as a config file gives it; `key` is its long name without dashes. Only
+  /// options of Role::content. The error's `where` is empty.
+  [[nodiscard]] Result<void> set_content(const std::string& key, const nlohmann::ordered_json& value);
+  /// The present value as config() gives it; null when it has none. By long name without dashes.
+  [[nodiscard]] nlohmann::ordered_json config_value(std::string_view key) const;
+
   /// Given on the command line or in the config file. By long name with its dashes: "--grid".
   [[nodiscard]] bool given(std::string_view long_name) const;
   /// A usage error when one of these options was given.
@@ -149,6 +155,9 @@ class Options {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// A JSON object of at most 1 MiB; "-" is stdin. Errors name the file.
+[[nodiscard]] Result<nlohmann::ordered_json> read_config_file(const std::string& path);
 
 /// Other people's text for a terminal: line breaks and escape characters become question marks.
 [[nodiscard]] std::string printable(std::string text);

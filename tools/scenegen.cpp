@@ -14,12 +14,13 @@ struct Verb {
   std::string_view name;
   int (*run)(std::span<const std::string>);
 };
-constexpr std::array<Verb, 6> kVerbs{{{"animate", animate_verb},
+constexpr std::array<Verb, 7> kVerbs{{{"animate", animate_verb},
                                       {"schedule", schedule_verb},
                                       {"inspect", inspect_verb},
                                       {"diff", diff_verb},
                                       {"optimize", optimize_verb},
-                                      {"truth", truth_verb}}};
+                                      {"truth", truth_verb},
+                                      {"sweep", sweep_verb}}};
 
 int run(std::span<const std::string> arguments) {
   if (arguments.empty()) {

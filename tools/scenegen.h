@@ -14,6 +14,7 @@ int inspect_verb(std::span<const std::string> arguments);
 int diff_verb(std::span<const std::string> arguments);
 int optimize_verb(std::span<const std::string> arguments);
 int truth_verb(std::span<const std::string> arguments);
+int sweep_verb(std::span<const std::string> arguments);
 
 /// What `scenegen` says when it is called without arguments.
 [[nodiscard]] std::string generate_short_help();

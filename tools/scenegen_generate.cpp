@@ -1,12 +1,5 @@
 // scenegen [options]: parameters -> scene -> appearance times -> file.
-#include <algorithm>
-#include <cstdio>
-
-#include "gen/generate.h"
-#include "scene/gltf/write.h"
-#include "timeline/appearance.h"
-#include "timeline/statistics.h"
-#include "tools/memory.h"
+#include "tools/make_scene.h"
 #include "tools/output.h"
 #include "tools/scenegen.h"
 #include "tools/scenegen_options.h"
@@ -15,16 +8,6 @@
 namespace scenegen::tools {
 
 namespace {
-
-/// What was made, or would be.
-struct Made {
-  gen::Prediction counts;
-  gltf::WriteReport file;
-  std::optional<AppearanceInfo> appearance;
-  std::vector<std::string> notes;
-  std::vector<gltf::OutputFile> files;  ///< complete, not yet in their places
-  double seconds = 0;
-};
 
 Result<void> check(const GenerateRequest& r, const Options& options) {
   if (auto allowed = options.refuse(conflicts(r)); !allowed) return allowed;
@@ -40,80 +23,10 @@ Result<void> check(const GenerateRequest& r, const Options& options) {
   return check_output_file(r.report);
 }
 
-/// Refuses what would not fit: the kernel would end the process half way.
-Result<void> check_memory(std::uint64_t objects) {
-  constexpr std::uint64_t kBytesPerObject = 250;  // scene, times, grouping while writing (docs/BENCHMARKS.md)
-  const auto available = available_memory();
-  const std::uint64_t needed = objects * kBytesPerObject;
-  if (!available || needed <= *available) return {};
-  return fail(ErrorKind::bad_input, "",
-              human_count(objects) + " objects need about " + human_bytes(needed) + " of memory, " +
-                  human_bytes(*available) + " are free");
-}
-
-Result<gen::Prediction> predict(const GenerateRequest& r) {
-  return r.test_set != 0 ? gen::predict_test_set(static_cast<int>(r.test_set)) : gen::predict_town(r.town);
-}
-
-Result<gen::Generated> generate(const GenerateRequest& r) {
-  if (r.test_set == 0) return gen::generate_town(r.town);
-  return gen::generate_test_set(static_cast<int>(r.test_set), r.seed);
-}
-
-Result<Made> make(const GenerateRequest& r, const std::vector<std::string>& arguments) {
-  const Stopwatch stopwatch;
-  auto predicted = predict(r);
-  if (!predicted) return forward_error(predicted);
-  if (auto fits = check_memory(predicted->objects); !fits) return forward_error(fits);
-
-  constexpr std::uint64_t kLongWork = 300'000;  // objects; about a third of a second
-  Progress progress("", 0, r.quiet || predicted->objects < kLongWork);
-  progress.stage("laying " + counted(predicted->objects, "object"));
-  auto generated = generate(r);
-  if (!generated) return forward_error(generated);
-  Scene& scene = generated->scene;
-
-  Made made;
-  made.counts = *predicted;
-  made.notes = std::move(generated->notes);
-  scene.info.generator = "scenegen " SCENEGEN_VERSION;
-  scene.info.seed = r.seed;
-  scene.info.arguments = arguments;
-  if (r.curve) {
-    progress.stage("giving times");
-    auto appearance = timeline::assign_appearance(scene, r.appearance, generated->exempt);
-    if (!appearance) return forward_error(appearance);
-    made.appearance = *appearance;
-    if (r.profile.profile != timeline::Profile::appear) {
-      const auto activities = timeline::activities_of_appearance(scene, curve_activities(r.profile));
-      auto profiled = timeline::apply_curve_profiles(scene, activities, r.profile.options);
-      if (!profiled) return forward_error(profiled);
-    }
-    gen::drive_machines(scene, generated->machines, r.appearance.threads);
-  }
-  progress.stage(r.dry_run ? "measuring" : "writing " + r.output);
-  gltf::WriteOptions options = r.file;
-  options.later = &made.files;
-  auto file = r.dry_run ? gltf::predict(scene, r.output, options) : gltf::write(scene, r.output, options);
-  if (!file) return forward_error(file);
-  made.file = std::move(*file);
-  made.notes.insert(made.notes.end(), made.file.notes.begin(), made.file.notes.end());
-  if (!r.dry_run && (r.format != Format::table || !r.report.empty())) {
-    const timeline::Statistics counted = timeline::statistics(scene, r.appearance.threads);
-    made.counts = {counted.objects, counted.vertices, counted.triangles};
-  }
-  made.seconds = stopwatch.seconds();
-  return made;
-}
-
 double objects_per_group(const Made& made) {
   return made.file.instance_groups == 0 ? 0
                                         : static_cast<double>(made.file.instanced_objects) /
                                               static_cast<double>(made.file.instance_groups);
-}
-
-std::uint64_t moments(const Made& made) {
-  return made.appearance ? made.appearance->moments : 0;
 }
 
 /// "scene.glb  5.1 MB  38 016 objects  4 096 moments  coherence 0.951  locality 13.3  seed 1  0.21 s"
@@ -124,7 +37,7 @@ std::string finished_line(const GenerateRequest& r, const Made& made) {
     line += "  " + counted(made.counts.vertices, "vertex", "vertices") + "  " +
             counted(made.counts.triangles, "triangle");
   }
-  line += "  " + counted(moments(made), "moment");
+  line += "  " + counted(made.moments(), "moment");
   if (made.appearance) {
     line += "  coherence " + human_real(made.appearance->coherence_measured, 3) + "  locality " +
             human_real(made.appearance->locality_cells, 1);
@@ -149,7 +62,7 @@ Report report(const GenerateRequest& r, const Made& made, const std::vector<std:
   add("objects", made.counts.objects);
   add("vertices", made.counts.vertices);
   add("triangles", made.counts.triangles);
-  add("moments", moments(made));
+  add("moments", made.moments());
   add("bytes", made.file.bytes);
   add("jsonBytes", made.file.json_bytes);
   add("seed", r.seed);
@@ -186,7 +99,7 @@ Report report(const GenerateRequest& r, const Made& made, const std::vector<std:
 
 Result<int> work(GenerateRequest& r, const std::vector<std::string>& arguments) {
   settle(r);
-  auto made = make(r, arguments);
+  auto made = make_scene(r, arguments);
   if (!made) return forward_error(made);
   const Report facts = report(r, *made, arguments);
   auto said = say({.facts = facts,
@@ -217,6 +130,9 @@ std::string generate_short_help() {
          "scene?\n"
          "  scenegen optimize town.glb -o small.glb                            the same scene in a smaller "
          "file\n"
+         "  scenegen sweep sweep.json -o scenes                                many scenes, all combinations "
+         "of "
+         "parameters\n"
          "  sceneplay frames town.glb -o pictures                              see it\n"
          "\n"
          "scenegen --help lists every option with its default and range.\n";

@@ -236,12 +236,12 @@ std::vector<Conflict> conflicts_of_draco(const gltf::DracoOptions& draco) {
 }
 
 Options generate_options(GenerateRequest& r) {
-  Options options(
-      "scenegen",
-      {"scenegen [options]              generate a scene", "scenegen animate MODEL -o OUT [options]",
-       "scenegen schedule MODEL PLAN -o OUT [options]", "scenegen inspect FILE [options]",
-       "scenegen diff A B [options]", "scenegen optimize FILE -o OUT [options]"},
-      "makes a town of brick buildings that goes up along a space-filling curve, as glTF.");
+  Options options("scenegen",
+                  {"scenegen [options]              generate a scene",
+                   "scenegen animate MODEL -o OUT [options]", "scenegen schedule MODEL PLAN -o OUT [options]",
+                   "scenegen inspect FILE [options]", "scenegen diff A B [options]",
+                   "scenegen optimize FILE -o OUT [options]", "scenegen sweep CONFIG -o DIR [options]"},
+                  "makes a town of brick buildings that goes up along a space-filling curve, as glTF.");
   add_town_options(options, r);
   add_building_options(options, r);
   add_extra_options(options, r);

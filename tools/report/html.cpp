@@ -27,7 +27,6 @@ std::string element(const std::string& name, const std::string& text) {
 
 /// Factors on a line: better to the right of 1, worse to the left.
 constexpr double kStripWidth = 300;
-constexpr double kStripHeight = 40;
 
 /// Decimal logarithm at the ends of all strips of the report.
 double strip_reach(const std::vector<Tally>& tallies) {
