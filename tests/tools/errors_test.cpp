@@ -49,7 +49,8 @@ const Case kWrongCalls[] = {
     {"--zzzzzz", kUsage, "--zzzzzz: unknown option (--help lists them)"},
     {"-z", kUsage, "-z: unknown option (--help lists them)"},
     {"inspct a.glb", kUsage,
-     "unknown command 'inspct' (did you mean 'inspect'? one of: animate, schedule, inspect, diff, optimize)"},
+     "unknown command 'inspct' (did you mean 'inspect'? one of: animate, schedule, inspect, diff, optimize, "
+     "truth, sweep)"},
     {"--grid 2x2 stray", kUsage, "unexpected argument 'stray'"},
     {"--windows yes", kUsage, "--windows: unknown value 'yes' (one of: on, off)"},
     {"--layout node", kUsage,

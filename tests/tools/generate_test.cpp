@@ -217,6 +217,6 @@ TEST_CASE("no arguments give a short help and an example") {
   const TemporaryFolder folder;
   const ProcessResult result = made_by(folder, "");
   CHECK_THAT(result.out, Catch::Matchers::Contains("scenegen --grid 4x4 --curve hilbert"));
-  CHECK(std::count(result.out.begin(), result.out.end(), '\n') < 12);
+  CHECK(std::count(result.out.begin(), result.out.end(), '\n') < 14);
   CHECK(folder.entries().empty());
 }
