@@ -27,7 +27,8 @@ class Coverage {
       for (int x = first(lo.x); x < std::min<double>(kColumns, hi.x); ++x) {
         const double share = part(lo.x, hi.x, x) * part(lo.y, hi.y, y) * filled;
         inside += share;
-        open_[static_cast<std::size_t>(y * kColumns + x)] += times * std::log1p(-std::min(share, kAll));
+        open_[static_cast<std::size_t>(y) * kColumns + static_cast<std::size_t>(x)] +=
+            times * std::log1p(-std::min(share, kAll));
       }
     }
     return inside * cell.x * cell.y;
