@@ -122,6 +122,7 @@ std::string listing(const std::vector<ordered_json>& entries, Format format) {
   for (const ordered_json& entry : entries) {
     if (entry.is_null()) continue;
     std::vector<ordered_json> row;
+    row.reserve(columns.size());
     for (const Table::Column& column : columns)
       row.push_back(entry.contains(column.name) ? entry[column.name] : ordered_json());
     table.row(std::move(row));
