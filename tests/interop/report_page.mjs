@@ -20,7 +20,7 @@ const column = (name, title, unit, origin = 'ours', better = 'none', against = u
 function frameTimes() {
   const counts = [1000, 5000, 20000, 80000, 300000];
   const table = {
-    kind: 'table', id: 'times', title: 'Frame time by number of objects', note: 'The paper’s from its table 3.',
+    kind: 'table', id: 'recording', title: 'Frame time by number of objects', note: 'The paper’s from its table 3.',
     columns: [column('objects', 'objects', ''), column('paperMs', 'every object', 'ms', 'paper', 'lower'),
       column('ms', 'every object', 'ms', 'ours', 'lower', 'paperMs'), column('paperFps', 'rate', '1/s', 'paper', 'higher'),
       column('fps', 'rate', '1/s', 'ours', 'higher', 'paperFps'), column('bytes', 'memory', 'B')],
@@ -151,10 +151,10 @@ async function checkWords(page) {
   assert.equal(headlines[0], 'llvmpipe: better than the paper in 4 of 8 figures, level in 2, worse in 2.');
   const counts = await page.locator('.glance').first().locator('.counts').innerText();
   assert.match(counts.replaceAll(/\s+/g, ' '), /✓ 4 better ≈ 2 level ✗ 2 worse typically 1\.5× better/);
-  const row = (n) => page.locator('#run1-times tbody tr').nth(n).locator('th, td').allInnerTexts().then((cells) => cells.map((c) => c.replaceAll(/\s+/g, ' ').trim()));
+  const row = (n) => page.locator('#run1-recording tbody tr').nth(n).locator('th, td').allInnerTexts().then((cells) => cells.map((c) => c.replaceAll(/\s+/g, ' ').trim()));
   assert.deepEqual((await row(0)).slice(0, 5), ['1000', '2.0', '1.0✓ 2.0× better', '500.0', '1000.0✓ 2.0× better']);
   assert.deepEqual((await row(3)).slice(2, 5), ['110.0✗ 2.0× worse', '18.0', '–']);
-  assert.deepEqual(await page.locator('#run1-times thead th').last().innerText(), 'memory MB', 'bytes are scaled');
+  assert.deepEqual(await page.locator('#run1-recording thead th').last().innerText(), 'memory MB', 'bytes are scaled');
   assert.match(await page.locator('#run1-gone').innerText(), /gone\.png cannot be shown/);
   assert.match(await page.locator('#run1-times-chart .note').innerText(), /1 point is not drawn/);
   assert.equal(await page.locator('#run1-times-chart svg.broad path.line.paper').count(), 1);

@@ -84,6 +84,12 @@ TEST_CASE("figures that are no numbers become nothing") {
   CHECK(std::get<Chart>(read_blocks[1]).series[0].points.size() == 1);
 }
 
+TEST_CASE("a section and a block of it may have the same id, two blocks may not") {
+  CHECK(error_with("/sections/0/blocks/0/id", "d56").empty());
+  CHECK(error_with("/sections/0/blocks/1/id", "times") ==
+        "x.json: /document/sections/0/blocks/1/id: 'times' is there twice");
+}
+
 TEST_CASE("what later versions add and what has a default may differ") {
   CHECK(error_with("/sections/0/more", 1).empty());
   CHECK(error_without("/sections/0/blocks/0", "note").empty());

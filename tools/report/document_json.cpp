@@ -352,16 +352,21 @@ Block read_block(const Reader& in, std::set<std::string>& ids) {
   return kKinds[kind] == "chart" ? named(read_chart(in)) : named(read_picture(in));
 }
 
-DocumentSection read_section(const Reader& in, std::set<std::string>& ids) {
+/// Ids that are taken: a section and a block of it may have the same.
+struct Ids {
+  std::set<std::string> sections, blocks;
+};
+
+DocumentSection read_section(const Reader& in, Ids& ids) {
   DocumentSection out;
-  in.id(out.id, ids);
+  in.id(out.id, ids.sections);
   in.text("title", out.title, kMostName);
   in.member("paragraphs", [&](const Reader& paragraphs) {
     paragraphs.elements(kMostParagraphs,
                         [&](const Reader& p) { p.text(out.paragraphs.emplace_back(), kMostText); });
   });
   in.member("blocks", [&](const Reader& blocks) {
-    blocks.elements(kMostBlocks, [&](const Reader& b) { out.blocks.push_back(read_block(b, ids)); });
+    blocks.elements(kMostBlocks, [&](const Reader& b) { out.blocks.push_back(read_block(b, ids.blocks)); });
   });
   return out;
 }
@@ -388,7 +393,7 @@ Result<Document> document_from_json(const ordered_json& json, const std::string&
   Found found;
   const Reader in(json, pointer, found);
   Document out;
-  std::set<std::string> ids;
+  Ids ids;
   in.text("title", out.title, kMostName);
   in.member("facts", [&](const Reader& facts) {
     facts.elements(kMostFacts, [&](const Reader& fact) {
