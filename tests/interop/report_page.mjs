@@ -29,7 +29,7 @@ function frameTimes() {
       [80000, 55, 110, 18, null, 83e6], [300000, 160, null, 6, 12.5, 305e6]],
   };
   const chart = {
-    kind: 'chart', id: 'times-chart', title: 'Frame time by number of objects', xTitle: 'objects', yTitle: 'frame time, ms', logX: true, logY: true,
+    kind: 'chart', id: 'recording', title: 'Frame time by number of objects', xTitle: 'objects', yTitle: 'frame time, ms', logX: true, logY: true,
     note: 'Spread: 95 % interval.',
     series: [
       { name: 'inline', origin: 'ours', points: counts.map((x) => ({ x, y: x / 2000, low: x / 2400, high: x / 1800 })) },
@@ -151,18 +151,18 @@ async function checkWords(page) {
   assert.equal(headlines[0], 'llvmpipe: better than the paper in 4 of 8 figures, level in 2, worse in 2.');
   const counts = await page.locator('.glance').first().locator('.counts').innerText();
   assert.match(counts.replaceAll(/\s+/g, ' '), /✓ 4 better ≈ 2 level ✗ 2 worse typically 1\.5× better/);
-  const row = (n) => page.locator('#run1-recording tbody tr').nth(n).locator('th, td').allInnerTexts().then((cells) => cells.map((c) => c.replaceAll(/\s+/g, ' ').trim()));
+  const row = (n) => page.locator('#run1-table-recording tbody tr').nth(n).locator('th, td').allInnerTexts().then((cells) => cells.map((c) => c.replaceAll(/\s+/g, ' ').trim()));
   assert.deepEqual((await row(0)).slice(0, 5), ['1000', '2.0', '1.0✓ 2.0× better', '500.0', '1000.0✓ 2.0× better']);
   assert.deepEqual((await row(3)).slice(2, 5), ['110.0✗ 2.0× worse', '18.0', '–']);
-  assert.deepEqual(await page.locator('#run1-recording thead th').last().innerText(), 'memory MB', 'bytes are scaled');
-  assert.match(await page.locator('#run1-gone').innerText(), /gone\.png cannot be shown/);
-  assert.match(await page.locator('#run1-times-chart .note').innerText(), /1 point is not drawn/);
-  assert.equal(await page.locator('#run1-times-chart svg.broad path.line.paper').count(), 1);
-  assert.notEqual(await page.locator('#run1-times-chart svg.broad path.line.paper').evaluate((n) => getComputedStyle(n).strokeDasharray), 'none');
-  const color = (selector) => page.locator(`#run1-times-chart svg.broad ${selector}`).first().evaluate((n) => getComputedStyle(n).stroke);
+  assert.deepEqual(await page.locator('#run1-table-recording thead th').last().innerText(), 'memory MB', 'bytes are scaled');
+  assert.match(await page.locator('#run1-picture-gone').innerText(), /gone\.png cannot be shown/);
+  assert.match(await page.locator('#run1-chart-recording .note').innerText(), /1 point is not drawn/);
+  assert.equal(await page.locator('#run1-chart-recording svg.broad path.line.paper').count(), 1);
+  assert.notEqual(await page.locator('#run1-chart-recording svg.broad path.line.paper').evaluate((n) => getComputedStyle(n).strokeDasharray), 'none');
+  const color = (selector) => page.locator(`#run1-chart-recording svg.broad ${selector}`).first().evaluate((n) => getComputedStyle(n).stroke);
   assert.equal(await color('path.line.paper'), await color('path.line:not(.paper).s0'), 'the paper’s curve has the color of ours');
-  assert.equal(await page.locator('#run1-times-chart svg.broad path.band').count(), 1);
-  assert.equal(await page.locator('#run1-times-chart svg.broad path.whisker').count(), 1);
+  assert.equal(await page.locator('#run1-chart-recording svg.broad path.band').count(), 1);
+  assert.equal(await page.locator('#run1-chart-recording svg.broad path.whisker').count(), 1);
   assert.equal(await page.evaluate(() => window.harmed ?? document.querySelectorAll('script').length), 0);
 }
 

@@ -84,10 +84,13 @@ TEST_CASE("figures that are no numbers become nothing") {
   CHECK(std::get<Chart>(read_blocks[1]).series[0].points.size() == 1);
 }
 
-TEST_CASE("a section and a block of it may have the same id, two blocks may not") {
+TEST_CASE("a section, a table and a chart may have the same id, two tables may not") {
   CHECK(error_with("/sections/0/blocks/0/id", "d56").empty());
-  CHECK(error_with("/sections/0/blocks/1/id", "times") ==
-        "x.json: /document/sections/0/blocks/1/id: 'times' is there twice");
+  CHECK(error_with("/sections/0/blocks/1/id", "times").empty());
+  Document document = full();
+  document.sections[1].blocks.push_back(document.sections[0].blocks[0]);
+  CHECK(error_of(document_json(document)) ==
+        "x.json: /document/sections/1/blocks/0/id: 'times' is there twice");
 }
 
 TEST_CASE("what later versions add and what has a default may differ") {

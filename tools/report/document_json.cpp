@@ -338,11 +338,17 @@ Picture read_picture(const Reader& in) {
   return out;
 }
 
-Block read_block(const Reader& in, std::set<std::string>& ids) {
+/// Ids that are taken. Things of different kinds may have the same.
+struct Ids {
+  std::set<std::string> sections;
+  std::array<std::set<std::string>, kKinds.size()> blocks;
+};
+
+Block read_block(const Reader& in, Ids& ids) {
   std::size_t kind = 0;
   in.member("kind", [&](const Reader& at) { kind = at.word(kKinds); });
   std::string id;
-  in.id(id, ids);
+  in.id(id, ids.blocks[kind]);
   if (in.failed()) return {};
   const auto named = [&id](auto block) {
     block.id = id;
@@ -351,11 +357,6 @@ Block read_block(const Reader& in, std::set<std::string>& ids) {
   if (kKinds[kind] == "table") return named(read_table(in));
   return kKinds[kind] == "chart" ? named(read_chart(in)) : named(read_picture(in));
 }
-
-/// Ids that are taken: a section and a block of it may have the same.
-struct Ids {
-  std::set<std::string> sections, blocks;
-};
 
 DocumentSection read_section(const Reader& in, Ids& ids) {
   DocumentSection out;
@@ -366,7 +367,7 @@ DocumentSection read_section(const Reader& in, Ids& ids) {
                         [&](const Reader& p) { p.text(out.paragraphs.emplace_back(), kMostText); });
   });
   in.member("blocks", [&](const Reader& blocks) {
-    blocks.elements(kMostBlocks, [&](const Reader& b) { out.blocks.push_back(read_block(b, ids.blocks)); });
+    blocks.elements(kMostBlocks, [&](const Reader& b) { out.blocks.push_back(read_block(b, ids)); });
   });
   return out;
 }

@@ -101,8 +101,8 @@ std::string run_name(const ReportRun& run) {
   return run.document.title;
 }
 
-std::string anchor(std::size_t run, const std::string& id) {
-  return "run" + std::to_string(run + 1) + "-" + id;
+std::string anchor(std::size_t run, const std::string& kind, const std::string& id) {
+  return "run" + std::to_string(run + 1) + "-" + kind + "-" + id;
 }
 
 std::optional<Comparison> compare_cell(const DocumentTable& table, std::size_t row, std::size_t column) {

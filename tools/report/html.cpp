@@ -23,11 +23,6 @@ std::string element(const std::string& name, const std::string& text) {
   return "<" + name + ">" + escaped(text) + "</" + name + ">\n";
 }
 
-/// A section and a block of it may have the same id; no id has a point.
-std::string section_anchor(std::size_t run, const DocumentSection& section) {
-  return "run" + std::to_string(run + 1) + "." + escaped(section.id);
-}
-
 // ---- At a glance -----------------------------------------------------------------------------------------
 
 /// Factors on a line: better to the right of 1, worse to the left.
@@ -128,8 +123,9 @@ std::string headline_html(const RunReport& report, std::size_t run, const Tally&
 }
 
 std::string glance_html(const DocumentSection& section, std::size_t run, const Tally& t, double reach) {
-  std::string out = "<div class=\"glance\"><div><h3><a href=\"#" + section_anchor(run, section) + "\">" +
-                    escaped(section.title) + "</a></h3>\n";
+  std::string out = "<div class=\"glance\"><div><h3><a href=\"#" +
+                    escaped(anchor(run, "section", section.id)) + "\">" + escaped(section.title) +
+                    "</a></h3>\n";
   if (!section.paragraphs.empty()) out += element("p", section.paragraphs.front());
   out += "</div><div>";
   if (t.count() > 0) out += strip_svg(t, reach) + counts_html(t);
@@ -184,7 +180,8 @@ std::string facts_html(const Document& document) {
 
 std::string section_html(const ReportRun& from, const DocumentSection& section, std::size_t run,
                          Warnings& warnings) {
-  std::string out = "<section id=\"" + section_anchor(run, section) + "\">\n" + element("h3", section.title);
+  std::string out =
+      "<section id=\"" + escaped(anchor(run, "section", section.id)) + "\">\n" + element("h3", section.title);
   for (std::size_t i = 0; i < section.paragraphs.size(); ++i)
     out += (i == 0 ? "<p class=\"lead\">" : "<p>") + escaped(section.paragraphs[i]) + "</p>\n";
   for (const Block& block : section.blocks) {

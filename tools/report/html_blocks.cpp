@@ -12,7 +12,7 @@ namespace {
 
 std::string figure_open(const std::string& kind, std::size_t run, const std::string& id,
                         const std::string& title) {
-  const std::string name = escaped(anchor(run, id));
+  const std::string name = escaped(anchor(run, kind, id));
   return "<figure class=\"" + kind + "\" id=\"" + name + "\">\n<figcaption id=\"" + name + ".c\">" +
          escaped(title) + "</figcaption>\n";
 }
@@ -129,7 +129,7 @@ std::string table_html(const DocumentTable& table, std::size_t run) {
   std::vector<Look> looks;
   for (std::size_t i = 0; i < table.columns.size(); ++i) looks.push_back(look_of(table, i));
   constexpr std::size_t kManyColumns = 8;
-  const std::string name = escaped(anchor(run, table.id));
+  const std::string name = escaped(anchor(run, "table", table.id));
   std::string out = figure_open("table", run, table.id, table.title) +
                     "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"" + name +
                     ".c\"><table" + (table.columns.size() > kManyColumns ? " class=\"wide\"" : "") + ">\n" +
@@ -152,7 +152,7 @@ std::string chart_html(const Chart& chart, std::size_t run) {
     out += "</li>";
   }
   out += "</ul>\n";
-  const std::string id = anchor(run, chart.id);
+  const std::string id = anchor(run, "chart", chart.id);
   out += chart_svg(chart, id, {"broad", 760, 380}) + chart_svg(chart, id, {"slim", 340, 300});
   const std::string missing = left_out(chart);
   out += note_html(chart.note + (chart.note.empty() || missing.empty() ? "" : " ") + missing);

@@ -24,8 +24,9 @@ struct RunReport {
 
 /// The device's name when the run's facts say it, else the title of its document.
 [[nodiscard]] std::string run_name(const ReportRun& run);
-/// Name of an id of a run's document in the whole report: "run1-queries".
-[[nodiscard]] std::string anchor(std::size_t run, const std::string& id);
+/// Name of an id of a run's document in the whole report: "run1-chart-queries". `kind`: section, table, chart
+/// or picture; ids are unique among those of one kind.
+[[nodiscard]] std::string anchor(std::size_t run, const std::string& kind, const std::string& id);
 
 enum class Outcome : std::uint8_t { better, level, worse };
 /// Figures that differ by at most this share of the paper's are level: noise of one and rounding of the

@@ -225,7 +225,7 @@ std::vector<std::pair<std::string, std::string>> report_csv(const RunReport& rep
         if (const auto* table = std::get_if<DocumentTable>(&block))
           out.emplace_back(prefix + table->id + ".csv", table_csv(*table));
         if (const auto* chart = std::get_if<Chart>(&block))
-          out.emplace_back(prefix + chart->id + ".csv", chart_csv(*chart));
+          out.emplace_back(prefix + chart->id + ".chart.csv", chart_csv(*chart));
       }
     }
   }
