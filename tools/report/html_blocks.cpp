@@ -21,14 +21,13 @@ std::string note_html(const std::string& note) {
   return note.empty() ? note : "<p class=\"note\">" + escaped(note) + "</p>\n";
 }
 
-/// Says of a column of the paper's that it is one, unless its title does.
-std::string paper_tag(const Column& column) {
-  if (column.origin != Origin::paper) return {};
-  std::string title = column.title;
+/// Says of what is the paper's that it is, unless its title does.
+std::string paper_tag(Origin origin, std::string title) {
+  if (origin != Origin::paper) return {};
   for (char& c : title) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   const bool says =
       title.find("paper") != std::string::npos || title.find("dissertation") != std::string::npos;
-  return says ? std::string() : "<span class=\"tag\">paper</span> ";
+  return says ? std::string() : " <span class=\"tag\">paper</span> ";
 }
 
 constexpr std::size_t kShortWords = 24;
@@ -58,8 +57,8 @@ std::string head_html(const DocumentTable& table, const std::vector<Look>& looks
   std::string out = "<thead><tr>";
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const Column& column = table.columns[i];
-    out +=
-        "<th scope=\"col\" class=\"" + looks[i].classes + "\">" + paper_tag(column) + escaped(column.title);
+    out += "<th scope=\"col\" class=\"" + looks[i].classes + "\">" + paper_tag(column.origin, column.title) +
+           escaped(column.title);
     const std::string& unit = looks[i].format.unit;
     if (!unit.empty()) out += " <span class=\"unit\">" + escaped(unit) + "</span>";
     out += "</th>";
@@ -148,8 +147,7 @@ std::string chart_html(const Chart& chart, std::size_t run) {
   for (std::size_t i = 0; i < chart.series.size(); ++i) {
     const Series& series = chart.series[i];
     out += "<li>" + series_swatch(colors[i], series.origin) + escaped(series.name);
-    if (series.origin == Origin::paper) out += " <span class=\"tag\">paper</span>";
-    out += "</li>";
+    out += paper_tag(series.origin, series.name) + "</li>";
   }
   out += "</ul>\n";
   const std::string id = anchor(run, "chart", chart.id);
