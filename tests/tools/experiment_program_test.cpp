@@ -80,6 +80,69 @@ TEST_CASE("experiment: octree-or-bvh needs no device and gives the same counts a
   CHECK(counts_of(document_in(folder.file("d"))) != counts_of(first));
 }
 
+TEST_CASE("experiment: drawing, with figures of the paper beside ours and a picture") {
+  const TemporaryFolder folder;
+  const std::string call =
+      "experiment invisible-objects --quick --repeat 1 --size 96x54 --samples 1 --validation on --quiet -o ";
+  const auto result = play(call + folder.file("a"));
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  CHECK(result.out.empty());
+  const Document document = document_in(folder.file("a"));
+  REQUIRE(document.sections.size() == 1);
+  bool found = false;
+  std::size_t pictures = 0;
+  for (const Block& block : document.sections[0].blocks) {
+    if (const auto* picture = std::get_if<Picture>(&block)) {
+      ++pictures;
+      CHECK(read_file(folder.file("a/" + picture->file)).starts_with("\x89PNG"));
+    }
+    const auto* table = std::get_if<DocumentTable>(&block);
+    if (table == nullptr) continue;
+    double before = -1;
+    for (const std::vector<Cell>& row : table->rows) {
+      const double queries = std::get<double>(row[0]);
+      const double invisible = std::get<double>(row[1]);
+      CHECK(invisible >= before);  // more queries never find less
+      before = invisible;
+      if (queries == 100) {
+        found = true;
+        CHECK(std::get<double>(row[2]) == 45276);
+        CHECK(table->columns[2].origin == Origin::paper);
+        CHECK(table->columns[1].against == table->columns[2].name);
+      }
+    }
+    CHECK(before > 2000);
+    CHECK(before < 20000);
+  }
+  CHECK(found);
+  CHECK(pictures == 1);
+  REQUIRE(play(call + folder.file("b")).code == 0);
+  // Times are columns in ms; what is counted is the same again.
+  CHECK(counts_of(document_in(folder.file("b"))) == counts_of(document));
+}
+
+TEST_CASE("experiment: what cannot run is said, and the rest goes on") {
+  const TemporaryFolder folder;
+  const auto result =
+      play("experiment invisible-objects octree-or-bvh --quick --repeat 1 --device nonesuch -o " +
+           folder.file("a"));
+  CHECK(result.code == 2);
+  CHECK(result.err.starts_with("error: invisible-objects: --device"));
+  CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+  CHECK_THAT(result.out, Catch::Matchers::Contains("LBVH, Morton"));
+  const Document document = document_in(folder.file("a"));
+  REQUIRE(document.sections.size() == 1);
+  CHECK(document.sections[0].id == "octree-or-bvh");
+  const auto json = nlohmann::ordered_json::parse(read_file(folder.file("a/experiment.json")));
+  REQUIRE(json["failures"].size() == 1);
+  CHECK(json["failures"][0]["experiment"] == "invisible-objects");
+  // When nothing can run there is nothing to go on with, and no file.
+  const auto none = play("experiment recording --quick --device nonesuch -o " + folder.file("b"));
+  CHECK(none.code == 2);
+  CHECK_FALSE(std::filesystem::exists(folder.file("b/experiment.json")));
+}
+
 TEST_CASE("experiment: wrong calls") {
   const TemporaryFolder folder;
   test::write_file(folder.file("file"), "no folder");

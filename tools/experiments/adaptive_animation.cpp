@@ -112,7 +112,7 @@ DocumentTable stages_table(const std::vector<WayRuns>& runs, const std::string& 
 
 Result<void> play_animations(const ExperimentContext& context, AnimationFigures& out, DocumentTable& stages) {
   const double share = context.quick ? 0.02 : 1.0;
-  const std::uint32_t frames = context.quick ? 10 : 60;
+  const std::uint32_t frames = context.quick ? 10 : 48;
   for (int set = 1; set <= 4; ++set) {
     if (context.quick && set != 1 && set != 4) continue;
     begin_step(context, "adaptive-animation: " + stand_in_name(set));
@@ -190,7 +190,7 @@ Result<void> sweep_coherence(const ExperimentContext& context, CoherenceFigures&
     const auto info = timeline::assign_appearance(made->scene, how, made->exempt);
     if (!info) return tl::unexpected<Error>(info.error());
     const auto end_s = static_cast<double>(made->scene.duration_s);
-    const Turns turns{moments_between(0.02 * end_s, end_s, context.quick ? 8 : 48), 4,
+    const Turns turns{moments_between(0.02 * end_s, end_s, context.quick ? 8 : 32), 4,
                       repetitions(context, 2, 1), 2};
     auto runs = compare_ways(context, made->scene, the_ways(), turns);
     if (!runs) return forward_error(runs);

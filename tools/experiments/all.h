@@ -6,6 +6,10 @@
 namespace scenegen::tools {
 
 [[nodiscard]] Result<DocumentSection> adaptive_animation(const ExperimentContext& context);
+[[nodiscard]] Result<DocumentSection> invisible_objects(const ExperimentContext& context);
+[[nodiscard]] Result<DocumentSection> merged_batch(const ExperimentContext& context);
+[[nodiscard]] Result<DocumentSection> model_accuracy(const ExperimentContext& context);
 [[nodiscard]] Result<DocumentSection> octree_or_bvh(const ExperimentContext& context);
+[[nodiscard]] Result<DocumentSection> recording(const ExperimentContext& context);
 
 }  // namespace scenegen::tools

@@ -56,7 +56,7 @@ ChartPoint point(double x, const Spread& y) {
 
 std::string in_words(double ratio) {
   std::array<char, 32> text{};
-  const int digits = ratio >= 10 ? 0 : ratio >= 1 ? 1 : 2;
+  const int digits = ratio >= 10 ? 0 : ratio >= 1 ? 1 : ratio >= 0.1 ? 2 : 3;
   (void)std::snprintf(text.data(), text.size(), "%.*f", digits, ratio);
   return text.data();
 }

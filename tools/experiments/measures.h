@@ -31,7 +31,7 @@ struct Spread {
 /// Empty for what is negative: not measured.
 [[nodiscard]] Cell known(double value);
 [[nodiscard]] ChartPoint point(double x, const Spread& y);
-/// "1.6", for sentences: two significant digits and no exponent.
+/// "1.6", "0.012", for sentences: about two significant digits and no exponent.
 [[nodiscard]] std::string in_words(double ratio);
 
 /// How often each case is measured.
