@@ -227,7 +227,7 @@ Result<MergedFrame> MergedRenderer::frame(const timeline::Player& player, bool c
     out.drawing = stage_->frame([&](const render::PassContext& context) {
       render::PassRecording pass(context, stage_->target());
       const vk::CommandBuffer kept = *commands_;
-      pass.execute({&kept, 1}, draws_.size(), 0);
+      pass.execute({&kept, 1}, {.draws = draws_.size()});
       pass.end();
     });
   });

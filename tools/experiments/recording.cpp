@@ -70,7 +70,7 @@ Recorded measure(DrawStage& stage, std::uint32_t each, std::uint32_t repeat) {
   const auto record = [&](const PassContext& context) {
     render::PassRecording pass(context, stage.target());
     if (kept) {
-      pass.execute(kept->handles(), 0, 0);
+      pass.execute(kept->handles(), {});
     } else {
       render::DrawRecorder& draws = pass.draws();
       for (std::uint32_t s = 0; s < slots; ++s) draws.draw(s);
