@@ -24,6 +24,7 @@ Document document_in(const std::string& folder) {
   CHECK(json["version"] == 1);
   CHECK(json["machine"]["cores"] >= 1);
   auto document = document_from_json(json["document"], "/document");
+  INFO((document ? "" : document.error().str()));
   REQUIRE(document);
   return std::move(*document);
 }
@@ -120,6 +121,27 @@ TEST_CASE("experiment: drawing, with figures of the paper beside ours and a pict
   REQUIRE(play(call + folder.file("b")).code == 0);
   // Times are columns in ms; what is counted is the same again.
   CHECK(counts_of(document_in(folder.file("b"))) == counts_of(document));
+}
+
+TEST_CASE("experiment: all of them, small, make one document", "[.all]") {
+  const TemporaryFolder folder;
+  const auto result =
+      play("experiment all --quick --repeat 1 --size 64x36 --samples 1 --calibration none -q -o " +
+           folder.file("a"));
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  const Document document = document_in(folder.file("a"));
+  REQUIRE(document.sections.size() == experiments().size());
+  for (std::size_t i = 0; i < document.sections.size(); ++i) {
+    CHECK(document.sections[i].id == experiments()[i].name);
+    for (const Block& block : document.sections[i].blocks) {
+      if (const auto* table = std::get_if<DocumentTable>(&block)) {
+        CHECK_FALSE(table->rows.empty());
+        CHECK(std::filesystem::exists(folder.file("a/" + table->id + ".csv")));
+      }
+    }
+  }
+  CHECK(play("report " + folder.file("a") + " -o " + folder.file("report.html")).code == 0);
 }
 
 TEST_CASE("experiment: what cannot run is said, and the rest goes on") {

@@ -166,7 +166,7 @@ double r_squared(const std::vector<std::pair<double, double>>& points, const ren
 
 struct EffectFigures {
   DocumentTable table{
-      "invisible-objects",
+      "invisible-by-queries",
       "Invisible objects found, by number of queries",
       {{"queries", "queries", "", Origin::ours, Better::none, {}, 6},
        {"invisible", "invisible objects", "", Origin::ours, Better::higher, "invisiblePaper", 6},
@@ -181,7 +181,7 @@ struct EffectFigures {
        {"readMs", "reading", "ms", Origin::ours, Better::lower}},
       {},
       {}};
-  Chart chart{"invisible-objects-chart",
+  Chart chart{"invisible-chart",
               "Invisible objects by number of queries",
               "queries + 1",
               "share of all objects, %",

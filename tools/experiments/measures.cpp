@@ -158,7 +158,7 @@ Result<Picture> take_picture(const ExperimentContext& context, const Scene& scen
   const auto written = write_file((std::filesystem::path(context.folder) / file).string(),
                                   render::encode_picture(render::PictureFormat::png, size, frame.rgba));
   if (!written) return tl::unexpected<Error>(written.error());
-  return Picture{id, title, file, {}};
+  return Picture{"picture-" + id, title, file, {}};
 }
 
 void begin_step(const ExperimentContext& context, const std::string& what) {

@@ -166,7 +166,7 @@ void add_case(const Result<Case>& found, const PaperTable& paper, const PaperTab
 Result<DocumentSection> model_accuracy(const ExperimentContext& context) {
   const PaperTable paper("model_accuracy");
   const PaperTable sizes("test_sets");
-  DocumentTable table{"model-accuracy",
+  DocumentTable table{"accuracy-by-set",
                       "Frame times, measured and predicted",
                       {{"way", "way", ""},
                        {"set", "set", "", Origin::ours, Better::none, {}, 2},

@@ -101,7 +101,7 @@ constexpr std::array kTechniques{Technique{"secondary_of_1000", "kept, 1000 a bu
 
 Result<DocumentTable> recording_table(const ExperimentContext& context, std::string& found) {
   const PaperTable paper("command_recording");
-  DocumentTable table{"recording",
+  DocumentTable table{"recording-times",
                       "Recording and submitting commands",
                       {{"technique", "technique", ""},
                        {"objects", "objects", "", Origin::ours, Better::none, {}, 6},
