@@ -8,8 +8,11 @@ namespace scenegen::render {
 // The most frames that may be in flight at once: each has a staging ring, a command pool and a set of
 // readback buffers of its own.
 constexpr std::uint32_t kMostFramesInFlight = 3;
-// Device memory comes in blocks of this size; larger resources get a block of their own.
-constexpr std::uint64_t kMemoryBlockBytes = 64ULL << 20;
+// Device memory comes in blocks, as large as all before them of the same kind of memory, from the least to
+// the most; what is larger than half of the next block gets one of its own. What is not used of a block is
+// lost: with 64 MiB each that was 60 B an object of a million.
+constexpr std::uint64_t kLeastMemoryBlockBytes = 1ULL << 20;
+constexpr std::uint64_t kMostMemoryBlockBytes = 16ULL << 20;
 // Staging for dirty records, per frame in flight; grows to what one frame needed.
 constexpr std::uint64_t kStagingBytes = 1ULL << 20;
 // Indirect draws of chunks come in blocks of this many, 20 B each.

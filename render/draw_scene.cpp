@@ -220,4 +220,11 @@ void DrawScene::clear_dirty() {
   dirty_records_.clear();
 }
 
+std::uint64_t DrawScene::memory_bytes() const {
+  return held_bytes(primitives_, primitives_of_mesh_, batches_, primitive_of_slot_, object_of_slot_,
+                    first_slot_of_object_, slots_by_object_) +
+         held_bytes(visible_object_, moving_objects_, dirty_slots_, dirty_records_) + boxes_.memory_bytes() +
+         visible_.memory_bytes() + mirrored_.memory_bytes();
+}
+
 }  // namespace scenegen::render

@@ -12,6 +12,7 @@
 #include "render/draw_optimize.h"
 #include "render/shaders/shared_types.h"
 #include "render/spatial/slot_boxes.h"
+#include "scene/held_bytes.h"
 #include "scene/scene.h"
 #include "timeline/player.h"
 
@@ -60,6 +61,7 @@ class BitSet {
   void reset(std::size_t i) { words_[i / 64] &= ~(std::uint64_t{1} << (i % 64)); }
   [[nodiscard]] bool test(std::size_t i) const { return ((words_[i / 64] >> (i % 64)) & 1U) != 0; }
   [[nodiscard]] std::span<const std::uint64_t> words() const { return words_; }
+  [[nodiscard]] std::uint64_t memory_bytes() const { return held_bytes(words_); }
 
  private:
   std::vector<std::uint64_t> words_;
@@ -110,6 +112,9 @@ class DrawScene {
   [[nodiscard]] std::span<const std::uint32_t> dirty_slots() const { return dirty_slots_; }
   [[nodiscard]] std::span<const ObjectRecord> dirty_records() const { return dirty_records_; }
   void clear_dirty();
+
+  /// Host memory held.
+  [[nodiscard]] std::uint64_t memory_bytes() const;
 
  private:
   void build_primitives(const Scene& scene, std::span<const std::uint32_t> texture_set_of_material);

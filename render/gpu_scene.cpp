@@ -9,6 +9,7 @@
 #include <map>
 
 #include "render/config.h"
+#include "scene/held_bytes.h"
 
 namespace scenegen::render {
 namespace {
@@ -77,16 +78,18 @@ MaterialRecord material_record(const Material& m) {
 GpuScene::GpuScene(const vkr::Device& device, vkr::Memory& memory, const vkr::Pipelines& pipelines,
                    const Scene& scene, const TextureSets& sets)
     : device_(device), memory_(memory) {
-  upload_ = memory_.buffer(kUploadBytes, BufferUsage::eTransferSrc, vkr::MemoryUse::upload);
+  upload_ =
+      memory_.buffer(kUploadBytes, BufferUsage::eTransferSrc, vkr::MemoryUse::upload, MemoryKind::staging);
   upload_geometry(scene);
   for (const Material& material : scene.materials) material_records_.push_back(material_record(material));
   material_records_.push_back(material_record(Material{}));
   check_range("materials", material_records_.size(), sizeof(MaterialRecord));
   materials_ = memory_.buffer(material_records_.size() * sizeof(MaterialRecord),
-                              BufferUsage::eStorageBuffer | BufferUsage::eTransferDst, vkr::MemoryUse::scene);
+                              BufferUsage::eStorageBuffer | BufferUsage::eTransferDst, vkr::MemoryUse::scene,
+                              MemoryKind::records);
   upload_bytes(materials_, std::as_bytes(std::span(material_records_)));
   camera_ = memory_.buffer(sizeof(CameraBlock), BufferUsage::eUniformBuffer | BufferUsage::eTransferDst,
-                           vkr::MemoryUse::device);
+                           vkr::MemoryUse::device, MemoryKind::records);
   upload_textures(scene, sets);
   const auto set_count = static_cast<std::uint32_t>(sets.sets.size());
   const std::array sizes{
@@ -147,7 +150,7 @@ void GpuScene::upload_geometry(const Scene& scene) {
   }
   const auto make = [&](auto& data, vk::BufferUsageFlags usage) {
     vkr::Buffer buffer = memory_.buffer(data.size() * sizeof(data[0]), usage | BufferUsage::eTransferDst,
-                                        vkr::MemoryUse::scene);
+                                        vkr::MemoryUse::scene, MemoryKind::geometry);
     upload_bytes(buffer, std::as_bytes(std::span(data)));
     return buffer;
   };
@@ -185,12 +188,14 @@ vkr::Image GpuScene::upload_image(const DecodedImage& decoded, vk::Format format
   using Usage = vk::ImageUsageFlagBits;
   const vk::Extent2D extent(decoded.width, decoded.height);
   const auto levels = static_cast<std::uint32_t>(std::bit_width(std::max(extent.width, extent.height)));
-  vkr::Image image = memory_.image({format, extent, levels, vk::SampleCountFlagBits::e1,
-                                    Usage::eSampled | Usage::eTransferSrc | Usage::eTransferDst});
+  vkr::Image image =
+      memory_.image({format, extent, levels, vk::SampleCountFlagBits::e1,
+                     Usage::eSampled | Usage::eTransferSrc | Usage::eTransferDst, MemoryKind::textures});
   vkr::Buffer own;  // of a texture that does not fit the upload buffer
   const vkr::Buffer* source = &upload_;
   if (decoded.rgba.size() > kUploadBytes) {
-    own = memory_.buffer(decoded.rgba.size(), BufferUsage::eTransferSrc, vkr::MemoryUse::upload);
+    own = memory_.buffer(decoded.rgba.size(), BufferUsage::eTransferSrc, vkr::MemoryUse::upload,
+                         MemoryKind::staging);
     source = &own;
   }
   std::memcpy(source->mapped(), decoded.rgba.data(), decoded.rgba.size());
@@ -279,19 +284,33 @@ void GpuScene::make_frame_set(const vkr::Pipelines& pipelines) {
 }
 
 void GpuScene::upload_records(std::span<const ObjectRecord> records) {
-  const std::uint64_t bytes = std::max<std::size_t>(records.size(), 1) * sizeof(ObjectRecord);
+  const std::uint64_t record_bytes = std::max<std::size_t>(records.size(), 1) * sizeof(ObjectRecord);
   check_range("slots (object x primitive)", records.size(), sizeof(ObjectRecord));
-  records_ =
-      memory_.buffer(bytes, BufferUsage::eStorageBuffer | BufferUsage::eTransferDst, vkr::MemoryUse::scene);
+  records_ = memory_.buffer(record_bytes, BufferUsage::eStorageBuffer | BufferUsage::eTransferDst,
+                            vkr::MemoryUse::scene, MemoryKind::records);
   upload_bytes(records_, std::as_bytes(records));
   upload_ = {};  // the last upload
-  if (const std::uint64_t spilled = memory_.spilled_bytes(); spilled > 0)
-    warnings_.push_back(
-        "device memory is full: " + std::to_string((spilled + 999'999) / 1'000'000) +
-        " MB of geometry and object records lie in memory of the host, where drawing is slower");
+  memory_.release_unused();
+  std::string spilled;
+  for (const auto& [kind, what] : {std::pair{MemoryKind::geometry, "geometry"},
+                                   std::pair{MemoryKind::records, "object and material records"}}) {
+    if (const std::uint64_t bytes = memory_.spilled_bytes(kind); bytes > 0)
+      spilled +=
+          (spilled.empty() ? "" : " and ") + std::to_string((bytes + 999'999) / 1'000'000) + " MB of " + what;
+  }
+  if (!spilled.empty())
+    warnings_.push_back("device memory is full: " + spilled +
+                        " lie in memory of the host, where drawing is slower");
   const vk::DescriptorBufferInfo info(*records_.buffer, 0, VK_WHOLE_SIZE);
   device_.device.updateDescriptorSets(
       vk::WriteDescriptorSet(frame_set_, 1, 0, vk::DescriptorType::eStorageBuffer, {}, info), {});
+}
+
+void GpuScene::add_memory(MemoryAccount& to) const {
+  to.add_host(MemoryKind::geometry, held_bytes(ranges_, work_));
+  to.add_host(MemoryKind::records, held_bytes(material_records_, dirty_materials_));
+  to.add_host(MemoryKind::textures,
+              held_bytes(images_, samplers_, texture_sets_, texture_masks_, image_index_));
 }
 
 void GpuScene::bind_shadow_map(const vkr::Image& map) {

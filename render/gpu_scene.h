@@ -60,6 +60,8 @@ class GpuScene {
   [[nodiscard]] const GeometryRange& range(GeometryId id) const { return ranges_[id.value]; }
   /// Of each geometry, as it is drawn.
   [[nodiscard]] std::span<const DrawWork> work() const { return work_; }
+  /// Host memory; what is on the device is counted where it was allocated.
+  void add_memory(MemoryAccount& to) const;
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:

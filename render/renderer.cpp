@@ -164,7 +164,8 @@ PassContext Renderer::State::context(vkr::Frame& frame, vkr::Barriers& barriers)
 vkr::Buffer& Renderer::State::readback(vkr::Buffer& buffer) {
   const std::uint64_t bytes = std::uint64_t{4} * options.size.x * options.size.y;
   if (buffer.bytes < bytes)
-    buffer = memory->buffer(bytes, vk::BufferUsageFlagBits::eTransferDst, vkr::MemoryUse::readback);
+    buffer = memory->buffer(bytes, vk::BufferUsageFlagBits::eTransferDst, vkr::MemoryUse::readback,
+                            MemoryKind::readback);
   return buffer;
 }
 
@@ -400,6 +401,16 @@ std::vector<std::string> Renderer::warnings() const {
 }
 std::uint64_t Renderer::device_bytes() const {
   return state_->memory->block_bytes();
+}
+MemoryAccount Renderer::memory(const timeline::Player& player) const {
+  MemoryAccount out;
+  state_->memory->add_to(out);
+  state_->gpu->add_memory(out);
+  state_->strategy->add_memory(out);
+  out.add_host(MemoryKind::timeline, player.memory_bytes() + player.timeline().memory_bytes());
+  out.add_host(MemoryKind::slots, state_->scene->memory_bytes());
+  out.objects = state_->scene->object_count();
+  return out;
 }
 std::vector<std::string> Renderer::take_validation_messages() {
   return state_->device->take_messages();

@@ -12,6 +12,7 @@
 
 #include "render/device_options.h"
 #include "render/gpu_stage.h"
+#include "render/memory_account.h"
 #include "render/model/choice.h"
 #include "render/model/unit_costs.h"
 #include "render/node_overlay.h"
@@ -127,6 +128,9 @@ class Renderer {
   [[nodiscard]] std::vector<std::string> warnings() const;
   /// Device memory taken from the driver, bytes.
   [[nodiscard]] std::uint64_t device_bytes() const;
+  /// All memory of the renderer, of `player` and its timeline, by kind. Takes some microseconds a thousand
+  /// chunks.
+  [[nodiscard]] MemoryAccount memory(const timeline::Player& player) const;
   /// What the validation layer reported so far; forgets it.
   [[nodiscard]] std::vector<std::string> take_validation_messages();
 

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "scene/held_bytes.h"
+
 namespace scenegen::timeline {
 
 /// Bitmap of `count` bits under two levels of summary bits: one bit a member plus 1/64. Draining scans
@@ -50,6 +52,8 @@ class OrderedMarks {
       if (bits != 0) visit(w, bits);
     });
   }
+
+  [[nodiscard]] std::uint64_t memory_bytes() const { return held_bytes(words_, groups_, top_); }
 
  private:
   void summarise(std::uint32_t i) {

@@ -5,6 +5,7 @@
 #include <bit>
 #include <vector>
 
+#include "scene/held_bytes.h"
 #include "timeline/keys.h"
 #include "timeline/ordered_marks.h"
 #include "timeline/timeline_data.h"
@@ -450,6 +451,16 @@ glm::mat4 Player::world_from_camera(CameraId id) const {
 
 const Timeline& Player::timeline() const {
   return *state_->timeline;
+}
+
+std::uint64_t Player::memory_bytes() const {
+  const State& s = *state_;
+  std::uint64_t sum = sizeof(State);
+  for (const OrderedMarks* marks : {&s.flipped_tracks, &s.flipped_objects, &s.dirty_frames, &s.moved_objects,
+                                    &s.remeshed_objects, &s.recolored_materials})
+    sum += marks->memory_bytes();
+  return sum + held_bytes(s.visible, s.track_on, s.shown, s.hidden, s.tracks, s.active, s.entered, s.frames,
+                          s.objects, s.moved, s.mesh, s.remeshed, s.base_color, s.emissive, s.recolored);
 }
 
 }  // namespace scenegen::timeline

@@ -33,6 +33,8 @@ class Player {
   [[nodiscard]] glm::vec3 emissive(MaterialId id) const;
   [[nodiscard]] glm::mat4 world_from_camera(CameraId id) const;
   [[nodiscard]] const Timeline& timeline() const;
+  /// Host memory held by the player, without its timeline.
+  [[nodiscard]] std::uint64_t memory_bytes() const;
 
  private:
   struct State;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "scene/held_bytes.h"
 #include "timeline/timeline_data.h"
 
 namespace scenegen::timeline {
@@ -39,6 +40,21 @@ std::span<const float> Timeline::visibility_times_s() const {
 }
 std::span<const std::uint64_t> Timeline::visibility_changes() const {
   return data_->visibility_changes;
+}
+
+std::uint64_t Timeline::memory_bytes() const {
+  const TimelineData& d = *data_;
+  const VisibilityEvents& v = d.visibility;
+  const KeyEvents& k = d.keys;
+  return sizeof(TimelineData) +
+         held_bytes(d.frame_from_object, d.object_frame, d.object_mesh, d.object_class, d.visible_at_start) +
+         held_bytes(d.world_from_frame, d.frame_slot, d.moving_frames, d.moving_local, d.matrices, d.children,
+                    d.frame_objects, d.moving_objects, d.object_slot) +
+         held_bytes(d.base_color, d.emissive, d.cameras, d.event_times_s, d.visibility_times_s,
+                    d.visibility_changes) +
+         held_bytes(v.time_s, v.track, v.first_flip, v.flip_s, v.on_at_start, v.objects.first,
+                    v.objects.items) +
+         held_bytes(k.time_s, k.track, k.segment, k.changes, k.tracks, k.pool, k.targets);
 }
 
 }  // namespace scenegen::timeline

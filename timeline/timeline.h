@@ -52,6 +52,8 @@ class Timeline {
   [[nodiscard]] std::span<const std::uint64_t> visibility_changes() const;
 
   [[nodiscard]] const TimelineData& data() const { return *data_; }
+  /// Host memory held.
+  [[nodiscard]] std::uint64_t memory_bytes() const;
 
  private:
   std::unique_ptr<const TimelineData> data_;

@@ -7,6 +7,7 @@
 
 #include "render/strategy_names.h"
 #include "tools/frame_fields.h"
+#include "tools/memory_fields.h"
 #include "tools/output.h"
 #include "tools/trace.h"
 
@@ -93,6 +94,7 @@ ordered_json BenchRun::json() const {
     out["counters"][std::string(counter_fields()[i].name)] = counters[i];
   out["deviceBytes"] = device_bytes;
   out["startMs"] = start_ms ? ordered_json(*start_ms) : ordered_json();
+  out["memory"] = memory;
   out["warnings"] = warnings;
   return out;
 }
@@ -111,6 +113,7 @@ std::optional<BenchRun> BenchRun::from_json(const ordered_json& json) {
       run.counters.push_back(json.at("counters").at(std::string(field.name)).get<std::uint64_t>());
     run.device_bytes = json.at("deviceBytes").get<std::uint64_t>();
     if (!json.at("startMs").is_null()) run.start_ms = json.at("startMs").get<double>();
+    run.memory = json.at("memory");
     run.warnings = json.at("warnings").get<std::vector<std::string>>();
     const auto complete = [&](const std::vector<double>& v) { return v.size() == run.frame_ms.size(); };
     if (run.frame_ms.empty() || !complete(run.cpu_ms) ||
@@ -242,6 +245,7 @@ Result<BenchRun> BenchSeat::run(const std::vector<double>& moments, std::uint32_
   for (const Traced& t : traced)
     trace->push_back(trace_row(t.report, t.view, options_.strategy, t.seek_ms, 1));
   pass.run.device_bytes = renderer_->device_bytes();
+  pass.run.memory = memory_json(renderer_->memory(*player_));
   pass.run.warnings = renderer_->warnings();
   if (Result<void> clean = check_validation(*renderer_); !clean) return forward_error(clean);
   return std::move(pass.run);

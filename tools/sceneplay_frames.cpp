@@ -20,6 +20,7 @@
 #include "tools/drawing_options.h"
 #include "tools/frame_fields.h"
 #include "tools/frame_times.h"
+#include "tools/memory_fields.h"
 #include "tools/output.h"
 #include "tools/sceneplay.h"
 #include "tools/trace.h"
@@ -38,6 +39,7 @@ struct FramesRequest {
   render::PictureFormat format = render::PictureFormat::png;
   bool ids = false, depth = false;
   bool show_nodes = false;
+  bool memory = false;
   std::string strategy = "inline";
   std::uint32_t frames_in_flight = 2;
   DrawingOptions drawing;
@@ -208,6 +210,7 @@ class Filming {
   [[nodiscard]] const ordered_json& trace() const { return trace_; }
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
   [[nodiscard]] render::Renderer& renderer() { return renderer_; }
+  [[nodiscard]] render::MemoryAccount memory() const { return renderer_.memory(player_); }
 
  private:
   struct Job {
@@ -264,20 +267,22 @@ class Filming {
 
 ordered_json report_json(const FramesRequest& request, Filming& filming, double load_s, double total_s) {
   const render::DeviceInfo& device = filming.renderer().device();
-  return {{"schema", "sceneplay/frames"},
-          {"version", 1},
-          {"file", request.file},
-          {"device", {{"name", device.name}, {"type", device.type}, {"driver", device.driver}}},
-          {"size", {request.drawing.size.x, request.drawing.size.y}},
-          {"samples", request.drawing.samples},
-          {"strategy", request.strategy},
-          {"framesInFlight", request.frames_in_flight},
-          {"shadows", request.drawing.shadows},
-          {"loadS", load_s},
-          {"totalS", total_s},
-          {"deviceBytes", filming.renderer().device_bytes()},
-          {"warnings", filming.renderer().warnings()},
-          {"frames", filming.frames()}};
+  ordered_json out{{"schema", "sceneplay/frames"},
+                   {"version", 1},
+                   {"file", request.file},
+                   {"device", {{"name", device.name}, {"type", device.type}, {"driver", device.driver}}},
+                   {"size", {request.drawing.size.x, request.drawing.size.y}},
+                   {"samples", request.drawing.samples},
+                   {"strategy", request.strategy},
+                   {"framesInFlight", request.frames_in_flight},
+                   {"shadows", request.drawing.shadows},
+                   {"loadS", load_s},
+                   {"totalS", total_s},
+                   {"deviceBytes", filming.renderer().device_bytes()}};
+  out.update(memory_json(filming.memory()));
+  out["warnings"] = filming.renderer().warnings();
+  out["frames"] = filming.frames();
+  return out;
 }
 
 render::RendererOptions renderer_options(const FramesRequest& request) {
@@ -358,6 +363,9 @@ Result<void> draw(const FramesRequest& request, const Options& options) {
     if (auto written = write_file(request.report, pretty(json)); !written)
       return without_pictures_lost(std::move(written.error()), request);
   }
+  if (request.memory) {
+    if (auto written = write_stdout(memory_table(filming.memory())); !written) return written;
+  }
   if (request.quiet) return {};
   return write_stdout(request.folder + "  " + human_count(times->size()) +
                       (times->size() == 1 ? " frame  " : " frames  ") +
@@ -389,6 +397,7 @@ void add_options(Options& options, FramesRequest& r) {
   options.add("--report", text_value(r.report, "FILE"), "counts and stage times of every frame as JSON");
   options.add("--trace", text_value(r.trace, "FILE"),
               "one row a frame: camera, choice, predictions, counts, stage times; .csv or .json");
+  options.flag("--memory", r.memory, "print what the renderer's memory is for, after the last frame");
   options.group("Time");
   options.add(
       "--times",

@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "render/passes/occlusion.h"
+#include "scene/held_bytes.h"
 
 namespace scenegen::render {
 
@@ -87,6 +88,10 @@ const CommandCache::Entry& CommandCache::get(const PassRecording& pass, std::uin
   }
   kept.last_used = pass.context().frame.serial;
   return kept.entry;
+}
+
+void CommandCache::add_memory(MemoryAccount& to) const {
+  to.add_host(MemoryKind::commands, held_bytes(free_, retired_, kept_[0], kept_[1]));
 }
 
 }  // namespace scenegen::render

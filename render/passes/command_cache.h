@@ -42,6 +42,7 @@ class CommandCache {
   };
   [[nodiscard]] Counters take_counters() { return std::exchange(counters_, {}); }
   [[nodiscard]] std::uint64_t buffers() const { return allocated_; }
+  void add_memory(MemoryAccount& to) const;
 
  private:
   struct Kept {

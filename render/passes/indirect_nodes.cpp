@@ -7,6 +7,8 @@
 
 #include "render/passes/occlusion.h"
 
+#include "scene/held_bytes.h"
+
 namespace scenegen::render {
 
 using vkr::Use;
@@ -37,7 +39,7 @@ IndirectNodes::Place IndirectNodes::take(const PassContext& context, std::uint32
     using Usage = vk::BufferUsageFlagBits;
     blocks_.push_back(context.memory.buffer(sizeof(Command) * std::uint64_t{block_commands_},
                                             Usage::eIndirectBuffer | Usage::eTransferDst,
-                                            vkr::MemoryUse::written));
+                                            vkr::MemoryUse::written, MemoryKind::indirect));
     used_ = 0;
   }
   const Place place{static_cast<std::uint32_t>(blocks_.size()) - 1, used_, size};
@@ -50,10 +52,12 @@ IndirectNodes::Command* IndirectNodes::stage(const PassContext& context, std::ui
   vkr::Buffer& staging = staging_[context.frame.serial % context.frames_in_flight];
   const std::uint64_t bytes = sizeof(Command) * commands;
   // The frame that used it is done. A first frame writes all there is: that much is not kept for ever.
-  if (staging.bytes < bytes || (staging.bytes > kStagingBytes && staging.bytes / 16 > bytes)) {
+  if (staging.bytes > kStagingBytes && staging.bytes / 16 > bytes) staging = {};
+  if (staging.bytes < bytes) {
     staging = {};
-    staging = context.memory.buffer(std::max(bytes + bytes / 2, kStagingBytes / 4),
-                                    vk::BufferUsageFlagBits::eTransferSrc, vkr::MemoryUse::upload);
+    const std::uint64_t room = bytes > kStagingBytes ? bytes : std::max(bytes + bytes / 2, kStagingBytes / 4);
+    staging = context.memory.buffer(room, vk::BufferUsageFlagBits::eTransferSrc, vkr::MemoryUse::upload,
+                                    MemoryKind::staging);
   }
   return reinterpret_cast<Command*>(staging.mapped());
 }
@@ -182,6 +186,13 @@ std::size_t IndirectNodes::draw(DrawRecorder& recorder, const Part& part) {
                             part.counts, part.governed ? predicate_offset(sent.chunk) : kLetPassOffset});
   }
   return sent_.size();
+}
+
+std::uint64_t IndirectNodes::memory_bytes() const {
+  std::uint64_t sum = held_bytes(blocks_, retired_, kept_, changed_, commands_, runs_before_, sent_, copies_);
+  for (const std::vector<Place>& places : free_) sum += held_bytes(places);
+  for (const Kept& kept : kept_) sum += held_bytes(kept.runs);
+  return sum;
 }
 
 }  // namespace scenegen::render

@@ -67,6 +67,8 @@ class IndirectNodes {
     std::uint64_t written_draws = 0;  ///< slots in them
   };
   [[nodiscard]] Counters take_counters() { return std::exchange(counters_, {}); }
+  /// Host memory held.
+  [[nodiscard]] std::uint64_t memory_bytes() const;
 
  private:
   using Command = VkDrawIndexedIndirectCommand;

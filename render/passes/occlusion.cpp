@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "render/shaders/scatter_comp.h"
+#include "scene/held_bytes.h"
 
 namespace scenegen::render {
 
@@ -74,7 +75,8 @@ void Occlusion::reserve(const PassContext& context, std::size_t asked, std::size
     if (form_ != Predicates::none) {
       p.results = {};
       p.results = context.memory.buffer(sizeof(std::uint32_t) * std::uint64_t{room},
-                                        Usage::eStorageBuffer | Usage::eTransferDst, vkr::MemoryUse::device);
+                                        Usage::eStorageBuffer | Usage::eTransferDst, vkr::MemoryUse::device,
+                                        MemoryKind::queries);
     }
     p.room = room;
   }
@@ -83,15 +85,15 @@ void Occlusion::reserve(const PassContext& context, std::size_t asked, std::size
   if (p.governed.bytes < sizeof(Governed) * chunks) {
     p.governed = {};
     p.governed = context.memory.buffer(std::max<std::uint64_t>(2 * sizeof(Governed) * chunks, 4096),
-                                       Usage::eStorageBuffer, vkr::MemoryUse::upload);
+                                       Usage::eStorageBuffer, vkr::MemoryUse::upload, MemoryKind::queries);
   }
   if (predicates_.bytes < predicate_offset(static_cast<std::uint32_t>(chunks))) {
     if (*predicates_.buffer) old_predicates_.push_back(std::move(predicates_));
     const auto read =
         form_ == Predicates::conditional ? Usage::eConditionalRenderingEXT : Usage::eIndirectBuffer;
-    predicates_ =
-        context.memory.buffer(std::max<std::uint64_t>(8 * chunks, 4096),
-                              Usage::eStorageBuffer | Usage::eTransferDst | read, vkr::MemoryUse::device);
+    predicates_ = context.memory.buffer(std::max<std::uint64_t>(8 * chunks, 4096),
+                                        Usage::eStorageBuffer | Usage::eTransferDst | read,
+                                        vkr::MemoryUse::device, MemoryKind::queries);
     fresh_ = true;
   }
   describe(p);  // nothing that uses the set is running: it belongs to this frame
@@ -174,6 +176,12 @@ Occlusion::Answers Occlusion::take_answers(const PassContext& context) {
                                sizeof(std::uint32_t), {}, *device_.device.getDispatcher());
   if (result != vk::Result::eSuccess) return {};
   return {p.asked, p.samples};
+}
+
+std::uint64_t Occlusion::memory_bytes() const {
+  std::uint64_t sum = held_bytes(old_predicates_);
+  for (const Place& p : places_) sum += held_bytes(p.asked, p.samples);
+  return sum;
 }
 
 }  // namespace scenegen::render

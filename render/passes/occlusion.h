@@ -70,6 +70,8 @@ class Occlusion {
     std::span<const std::uint32_t> samples;
   };
   [[nodiscard]] Answers take_answers(const PassContext& context);
+  /// Host memory held.
+  [[nodiscard]] std::uint64_t memory_bytes() const;
 
  private:
   struct Place {  // of a frame in flight

@@ -1,4 +1,5 @@
 #include "render/spatial/octree.h"
+#include "scene/held_bytes.h"
 
 #include <algorithm>
 #include <cassert>
@@ -455,10 +456,10 @@ void Octree::cull(const CullPlanes& planes, const glm::vec3& eye_m, std::vector<
 }
 
 std::uint64_t Octree::bytes() const {
-  std::uint64_t sum = nodes_.capacity() * sizeof(Node) + chunks_.capacity() * sizeof(Chunk) +
-                      chunk_of_slot_.capacity() * 4 + fits_.capacity();
-  for (const Node& node : nodes_) sum += node.chunks.capacity() * 4;
-  for (const Chunk& chunk : chunks_) sum += chunk.slots.capacity() * 4;
+  std::uint64_t sum = held_bytes(nodes_, chunks_, free_children_, free_chunks_, chunk_of_slot_, fits_) +
+                      held_bytes(dirty_chunks_, dirty_nodes_, coded_);
+  for (const Node& node : nodes_) sum += held_bytes(node.chunks);
+  for (const Chunk& chunk : chunks_) sum += held_bytes(chunk.slots);
   return sum;
 }
 

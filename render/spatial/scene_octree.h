@@ -27,6 +27,10 @@ class SceneOctree {
   /// Slots put off.
   [[nodiscard]] std::size_t pending() const { return pending_slots_; }
   [[nodiscard]] const Octree& tree() const { return tree_; }
+  /// Host memory held.
+  [[nodiscard]] std::uint64_t memory_bytes() const {
+    return tree_.bytes() + mirrored_.memory_bytes() + pending_.memory_bytes();
+  }
 
  private:
   void follow(std::uint32_t slot);

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "scene/held_bytes.h"
 #include "scene/transform.h"
 
 namespace scenegen::render {
@@ -18,6 +19,9 @@ struct SlotBoxes {
   void resize(std::size_t slots);
   /// An empty box becomes one that every plane rejects.
   void set(std::size_t slot, const Box& box);
+  [[nodiscard]] std::uint64_t memory_bytes() const {
+    return held_bytes(lo[0], lo[1], lo[2], hi[0], hi[1], hi[2]);
+  }
   [[nodiscard]] Box get(std::size_t slot) const {
     return {{lo[0][slot], lo[1][slot], lo[2][slot]}, {hi[0][slot], hi[1][slot], hi[2][slot]}};
   }

@@ -111,6 +111,10 @@ class Adaptive final : public Strategy {
   [[nodiscard]] model::FrameFacts facts() const override { return taken().facts(); }
   [[nodiscard]] std::vector<ChunkBox> chunk_boxes() const override { return taken().chunk_boxes(); }
   [[nodiscard]] const ChoiceReport* choice() const override { return &report_; }
+  void add_memory(MemoryAccount& to) const override {
+    flat_->add_memory(to);
+    tree_->add_memory(to);
+  }
 
  private:
   enum Way : std::size_t { flat, tree };

@@ -164,6 +164,17 @@ model::FrameFacts CachedOctree::facts() const {
   return facts;
 }
 
+void CachedOctree::add_memory(MemoryAccount& to) const {
+  if (inline_) inline_->add_memory(to);
+  if (octree_) to.add_host(MemoryKind::octree, octree_->memory_bytes());
+  to.add_host(MemoryKind::lists, held_bytes(chunks_, visits_, reversed_, buffers_) + list_.memory_bytes());
+  if (cache_) {
+    to.add_host(MemoryKind::commands, held_bytes(kept_));
+    cache_->add_memory(to);
+  }
+  if (nodes_) to.add_host(MemoryKind::indirect, nodes_->memory_bytes());
+}
+
 std::vector<ChunkBox> CachedOctree::chunk_boxes() const {
   std::vector<ChunkBox> out;
   if (inline_) return out;

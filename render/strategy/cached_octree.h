@@ -30,6 +30,7 @@ class CachedOctree : public Strategy {
   void resized(glm::uvec2 size) override;
   [[nodiscard]] model::FrameFacts facts() const override;
   [[nodiscard]] std::vector<ChunkBox> chunk_boxes() const override;
+  void add_memory(MemoryAccount& to) const override;
 
   // For a strategy that draws some frames in another way; in the others it calls update() and plan() as
   // usual.

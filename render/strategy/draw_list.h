@@ -8,6 +8,7 @@
 #include "render/draw_scene.h"
 #include "render/spatial/frustum_cull.h"
 #include "render/view.h"
+#include "scene/held_bytes.h"
 
 namespace scenegen::render {
 
@@ -19,6 +20,7 @@ struct DrawList {
   std::uint64_t tested = 0;           ///< boxes tested against the frustum
   std::vector<std::uint64_t> inside;  ///< scratch: bits of slots
 
+  [[nodiscard]] std::uint64_t memory_bytes() const { return held_bytes(solid, blended, inside); }
   void clear() {
     solid.clear();
     blended.clear();

@@ -68,6 +68,15 @@ class InlineQueries final : public ListStrategy {
     return facts;
   }
 
+  void add_memory(MemoryAccount& to) const override {
+    ListStrategy::add_memory(to);
+    std::uint64_t bytes = held_bytes(revisions_);
+    for (const Pass& pass : passes_)
+      bytes +=
+          held_bytes(pass.verdicts, pass.asked, pass.drawn, pass.hidden) + pass.occlusion->memory_bytes();
+    to.add_host(MemoryKind::queries, bytes);
+  }
+
  private:
   /// Frames after which an answer is too old: the slot was out of the frustum in between.
   static constexpr std::uint32_t kOld = 8;

@@ -17,6 +17,7 @@ class ListStrategy : public Strategy {
   void draw_blended(DrawRecorder& recorder) override;
   void resized(glm::uvec2 size) override { size_ = size; }
   [[nodiscard]] model::FrameFacts facts() const override;
+  void add_memory(MemoryAccount& to) const override { to.add_host(MemoryKind::lists, list_.memory_bytes()); }
 
  protected:
   /// Sorts, and counts what the list holds.

@@ -53,6 +53,12 @@ class OctreeRecord final : public ListStrategy {
     return facts;
   }
 
+  void add_memory(MemoryAccount& to) const override {
+    ListStrategy::add_memory(to);
+    to.add_host(MemoryKind::octree, octree_.memory_bytes());
+    to.add_host(MemoryKind::lists, held_bytes(chunks_, inside_));
+  }
+
  private:
   SceneOctree octree_;
   std::vector<std::uint32_t> chunks_;

@@ -15,6 +15,11 @@ class Queries final : public QueryOctree {
     for (std::size_t kind = 0; kind < kKinds; ++kind) choosers_.emplace_back(settings);
   }
 
+  void add_memory(MemoryAccount& to) const override {
+    QueryOctree::add_memory(to);
+    for (const QueryChooser& chooser : choosers_) to.add_host(MemoryKind::queries, chooser.memory_bytes());
+  }
+
  private:
   void learn(Kind kind, const Occlusion::Answers& answers) override {
     choosers_[kind].learn(answers.asked, answers.samples);

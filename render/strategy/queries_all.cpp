@@ -21,6 +21,11 @@ class QueriesAll final : public QueryOctree {
     return facts;
   }
 
+  void add_memory(MemoryAccount& to) const override {
+    QueryOctree::add_memory(to);
+    for (const std::vector<Belief>& beliefs : beliefs_) to.add_host(MemoryKind::queries, held_bytes(beliefs));
+  }
+
  private:
   /// Of a chunk, in one kind of pass; counts for the revision it was found out about.
   struct Belief {

@@ -11,6 +11,7 @@
 #include "render/spatial/query_box.h"
 #include "render/strategy/estimate_load.h"
 #include "render/strategy/query_plan.h"
+#include "scene/held_bytes.h"
 
 namespace scenegen::render {
 
@@ -57,6 +58,11 @@ class QueryChooser {
   [[nodiscard]] Phase phase() const { return phase_; }
   /// x* of the last frame: how many hidden parts it pays to ask about.
   [[nodiscard]] double best() const { return best_; }
+  /// Host memory held.
+  [[nodiscard]] std::uint64_t memory_bytes() const {
+    return held_bytes(nodes_, chunks_, seconds_, draws_, seconds_of_chunk_, below_) +
+           held_bytes(hidden_, unknown_, joined_, again_, query_of_, window_, points_, curve_);
+  }
 
  private:
   enum class Verdict : std::uint8_t { unknown, visible, hidden };

@@ -18,6 +18,7 @@ class QueryOctree : public CachedOctree {
   explicit QueryOctree(const StrategyContext& context);
   [[nodiscard]] model::FrameFacts facts() const override;
   [[nodiscard]] std::vector<ChunkBox> chunk_boxes() const override;
+  void add_memory(MemoryAccount& to) const override;
 
  protected:
   /// Passes have a depth each, so each asks for itself.

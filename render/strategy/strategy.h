@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "render/draw_scene.h"
+#include "render/memory_account.h"
 #include "render/model/choice.h"
 #include "render/model/prediction.h"
 #include "render/node_overlay.h"
@@ -81,6 +82,10 @@ class Strategy {
   /// Chunks in the frustum of the frame that was just drawn; none for strategies without an octree. For
   /// pictures of how it works.
   [[nodiscard]] virtual std::vector<ChunkBox> chunk_boxes() const { return {}; }
+
+  /// Adds the host memory that it holds, and what drivers hold for it; its Vulkan memory is counted where it
+  /// was allocated.
+  virtual void add_memory(MemoryAccount& /*to*/) const {}
 
   /// Of the last plan and the passes since.
   [[nodiscard]] const PlanCounters& counters() const { return counters_; }

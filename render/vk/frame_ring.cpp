@@ -13,7 +13,7 @@ std::byte* Staging::reserve(Memory& memory, std::uint64_t bytes) {
   if (buffer_.bytes < bytes) {
     buffer_ = Buffer{};
     buffer_ = memory.buffer(std::max({bytes + bytes / 2, kStagingBytes}),
-                            vk::BufferUsageFlagBits::eTransferSrc, MemoryUse::upload);
+                            vk::BufferUsageFlagBits::eTransferSrc, MemoryUse::upload, MemoryKind::staging);
   }
   used_ = bytes;
   return buffer_.mapped();

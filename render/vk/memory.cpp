@@ -1,6 +1,7 @@
 #include "render/vk/memory.h"
 
 #include <algorithm>
+#include <bit>
 #include <new>
 #include <optional>
 
@@ -13,16 +14,25 @@ struct Allocation::Block {
   vk::raii::DeviceMemory memory{nullptr};
   std::byte* mapped = nullptr;
   std::uint32_t type = 0;
+  bool device_local = false;
+  std::array<MemoryShare, kMemoryKinds>* shares = nullptr;  // Memory's
   bool image = false;  // buffers and images never share a block: no bufferImageGranularity to mind
 };
 
 Allocation::~Allocation() {
   if (block_ == nullptr) return;
+  count((*block_->shares)[static_cast<std::size_t>(kind_)], true);
   try {
     block_->pieces.release(offset_, bytes_);
   } catch (const std::bad_alloc&) {
     // The list of free pieces could not grow: this one stays taken until its block goes.
   }
+}
+
+void Allocation::count(MemoryShare& share, bool gone) const {
+  const std::uint64_t change = gone ? 0 - bytes_ : bytes_;  // unsigned: wraps back
+  (block_->device_local && !spilled_ ? share.device : share.host) += change;
+  if (spilled_) share.spilled += change;
 }
 
 vk::DeviceMemory Allocation::memory() const {
@@ -101,7 +111,7 @@ Allocation Memory::allocate(const vk::MemoryRequirements& needs, MemoryUse use, 
     return allocate_from(type, needs, image);
   } catch (const vk::OutOfDeviceMemoryError&) {
     Allocation out = allocate_from(host_type(device_.memory_properties, needs.memoryTypeBits), needs, image);
-    spilled_bytes_ += needs.size;
+    out.spilled_ = true;
     return out;
   }
 }
@@ -109,27 +119,28 @@ Allocation Memory::allocate(const vk::MemoryRequirements& needs, MemoryUse use, 
 Allocation Memory::allocate_from(std::uint32_t type, const vk::MemoryRequirements& needs, bool image) {
   Allocation out;
   out.bytes_ = needs.size;
-  const bool own_block = needs.size > kMemoryBlockBytes / 2;
-  if (!own_block) {
-    for (Allocation::Block& block : blocks_) {
-      if (block.type != type || block.image != image) continue;
-      if (const auto offset = block.pieces.allocate(needs.size, needs.alignment)) {
-        out.block_ = &block;
-        out.offset_ = *offset;
-        return out;
-      }
+  std::uint64_t taken = 0;
+  for (Allocation::Block& block : blocks_) {
+    if (block.type != type || block.image != image) continue;
+    if (const auto offset = block.pieces.allocate(needs.size, needs.alignment)) {
+      out.block_ = &block;
+      out.offset_ = *offset;
+      return out;
     }
+    taken += block.pieces.size();
   }
-  // Blocks of large resources that were freed go back to the driver before a new one is asked for.
-  blocks_.remove_if(
-      [](const Allocation::Block& b) { return b.pieces.unused() && b.pieces.size() != kMemoryBlockBytes; });
-  const std::uint64_t bytes = own_block ? needs.size : kMemoryBlockBytes;
+  release_unused();  // before a new one is asked for
+  std::uint64_t bytes = std::clamp(std::bit_ceil(taken), kLeastMemoryBlockBytes, kMostMemoryBlockBytes);
+  if (needs.size > bytes / 2) bytes = needs.size;
   Allocation::Block block{FreeList(bytes)};
   block.memory = vk::raii::DeviceMemory(device_.device, vk::MemoryAllocateInfo(bytes, type));
   constexpr vk::MemoryPropertyFlags kMapped = Flag::eHostVisible | Flag::eHostCoherent;
   if ((device_.memory_properties.memoryTypes[type].propertyFlags & kMapped) == kMapped)
     block.mapped = static_cast<std::byte*>(block.memory.mapMemory(0, VK_WHOLE_SIZE));
   block.type = type;
+  block.device_local =
+      static_cast<bool>(device_.memory_properties.memoryTypes[type].propertyFlags & Flag::eDeviceLocal);
+  block.shares = &shares_;
   block.image = image;
   blocks_.push_back(std::move(block));
   out.block_ = &blocks_.back();
@@ -137,11 +148,17 @@ Allocation Memory::allocate_from(std::uint32_t type, const vk::MemoryRequirement
   return out;
 }
 
-Buffer Memory::buffer(std::uint64_t bytes, vk::BufferUsageFlags usage, MemoryUse use) {
+Allocation Memory::counted(Allocation piece, MemoryKind kind) {
+  piece.kind_ = kind;
+  piece.count(shares_[static_cast<std::size_t>(kind)], false);
+  return piece;
+}
+
+Buffer Memory::buffer(std::uint64_t bytes, vk::BufferUsageFlags usage, MemoryUse use, MemoryKind kind) {
   Buffer out;
   out.bytes = std::max<std::uint64_t>(bytes, 16);
   out.buffer = vk::raii::Buffer(device_.device, vk::BufferCreateInfo({}, out.bytes, usage));
-  out.allocation = allocate(out.buffer.getMemoryRequirements(), use, false);
+  out.allocation = counted(allocate(out.buffer.getMemoryRequirements(), use, false), kind);
   out.buffer.bindMemory(out.allocation.memory(), out.allocation.offset());
   return out;
 }
@@ -163,7 +180,8 @@ Image Memory::image(const ImageOptions& options) {
   create.tiling = vk::ImageTiling::eOptimal;
   create.usage = options.usage;
   out.image = vk::raii::Image(device_.device, create);
-  out.allocation = allocate(out.image.getMemoryRequirements(), MemoryUse::device, true);
+  out.allocation =
+      counted(allocate(out.image.getMemoryRequirements(), MemoryUse::device, true), options.kind);
   out.image.bindMemory(out.allocation.memory(), out.allocation.offset());
   out.view = vk::raii::ImageView(
       device_.device,
@@ -176,6 +194,21 @@ std::uint64_t Memory::block_bytes() const {
   std::uint64_t sum = 0;
   for (const Allocation::Block& block : blocks_) sum += block.pieces.size();
   return sum;
+}
+
+void Memory::add_to(MemoryAccount& account) const {
+  for (std::size_t i = 0; i < kMemoryKinds; ++i) {
+    account.kinds[i].host += shares_[i].host;
+    account.kinds[i].device += shares_[i].device;
+    account.kinds[i].spilled += shares_[i].spilled;
+  }
+  MemoryShare& unused = account[MemoryKind::unused];
+  for (const Allocation::Block& block : blocks_)
+    (block.device_local ? unused.device : unused.host) += block.pieces.free_bytes();
+}
+
+void Memory::release_unused() {
+  blocks_.remove_if([](const Allocation::Block& block) { return block.pieces.unused(); });
 }
 
 }  // namespace scenegen::render::vkr

@@ -1,12 +1,14 @@
 // Block suballocator for device memory, and the buffers and images that live in it.
 #pragma once
 
+#include <array>
 #include <list>
 #include <memory>
 #include <span>
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
 
+#include "render/memory_account.h"
 #include "render/vk/device.h"
 #include "render/vk/free_list.h"
 #include "render/vk/use.h"
@@ -48,10 +50,16 @@ class Allocation {
     std::swap(block_, other.block_);
     std::swap(offset_, other.offset_);
     std::swap(bytes_, other.bytes_);
+    std::swap(kind_, other.kind_);
+    std::swap(spilled_, other.spilled_);
   }
+  /// Adds to a share what this piece is, or takes it off.
+  void count(MemoryShare& share, bool gone) const;
   Block* block_ = nullptr;
   std::uint64_t offset_ = 0;
   std::uint64_t bytes_ = 0;
+  MemoryKind kind_ = MemoryKind::unused;
+  bool spilled_ = false;  // meant for the device, in memory of the host
 };
 
 struct Buffer {
@@ -78,6 +86,7 @@ struct ImageOptions {
   std::uint32_t mip_levels = 1;
   vk::SampleCountFlagBits samples = vk::SampleCountFlagBits::e1;
   vk::ImageUsageFlags usage;
+  MemoryKind kind = MemoryKind::targets;
 };
 
 /// Throws vk::OutOfDeviceMemoryError and the like; the room's border turns them into errors.
@@ -88,22 +97,30 @@ class Memory {
   Memory(const Memory&) = delete;
   Memory& operator=(const Memory&) = delete;
 
-  [[nodiscard]] Buffer buffer(std::uint64_t bytes, vk::BufferUsageFlags usage, MemoryUse use);
+  [[nodiscard]] Buffer buffer(std::uint64_t bytes, vk::BufferUsageFlags usage, MemoryUse use,
+                              MemoryKind kind);
   [[nodiscard]] Image image(const ImageOptions& options);
   /// Bytes of all blocks taken from the driver.
   [[nodiscard]] std::uint64_t block_bytes() const;
-  /// Bytes for MemoryUse::scene that lie in memory of the host.
-  [[nodiscard]] std::uint64_t spilled_bytes() const { return spilled_bytes_; }
+  /// Adds all that is taken from the driver, by kind.
+  void add_to(MemoryAccount& account) const;
+  /// What was for MemoryUse::scene and lies in memory of the host, of one kind, bytes.
+  [[nodiscard]] std::uint64_t spilled_bytes(MemoryKind kind) const {
+    return shares_[static_cast<std::size_t>(kind)].spilled;
+  }
+  /// Gives blocks in which nothing lies back to the driver.
+  void release_unused();
 
  private:
   Allocation allocate(const vk::MemoryRequirements& needs, MemoryUse use, bool image);
   Allocation allocate_from(std::uint32_t type, const vk::MemoryRequirements& needs, bool image);
+  Allocation counted(Allocation piece, MemoryKind kind);
   void take_from_device(std::uint64_t bytes);
 
   const Device& device_;
   MemoryFaults faults_;
-  std::uint64_t device_bytes_ = 0;  // for faults_ only
-  std::uint64_t spilled_bytes_ = 0;
+  std::uint64_t device_bytes_ = 0;                // for faults_ only
+  std::array<MemoryShare, kMemoryKinds> shares_;  // of what is allocated; pieces take themselves off
   std::list<Allocation::Block> blocks_;
 };
 
