@@ -45,9 +45,9 @@ struct MemoryShare {
 
 /// Command buffers that are kept: what the driver holds for them, beside what the model says.
 struct CommandMemoryReport {
-  std::uint64_t buffers = 0;  ///< allocated
-  std::uint64_t draws = 0;    ///< recorded in them
-  double predicted = 0;       ///< (2.6), bytes
+  std::uint64_t buffers = 0;   ///< allocated
+  std::uint64_t draws = 0;     ///< recorded in them
+  double predicted = 0;        ///< (2.6), bytes
   std::uint64_t measured = 0;  ///< bytes that the driver asked for, or took from the process
 };
 

@@ -31,7 +31,8 @@ ordered_json memory_json(const MemoryAccount& account) {
 }
 
 std::string memory_table(const MemoryAccount& account) {
-  Table table({{"kind", "memory"}, {"hostMb", "host MB"}, {"deviceMb", "device MB"}, {"each", "B an object"}});
+  Table table(
+      {{"kind", "memory"}, {"hostMb", "host MB"}, {"deviceMb", "device MB"}, {"each", "B an object"}});
   const double objects = std::max(1.0, static_cast<double>(account.objects));
   for (std::size_t i = 0; i < render::kMemoryKinds; ++i) {
     const MemoryShare& share = account.kinds[i];

@@ -13,7 +13,7 @@ void InstanceList::write(const PassContext& context, std::span<const std::uint32
     buffer = {};
     buffer = context.memory.buffer(
         std::max<std::uint64_t>(std::min<std::uint64_t>(slots.size_bytes() * 3 / 2, most), 4),
-        vk::BufferUsageFlagBits::eVertexBuffer, vkr::MemoryUse::upload);
+        vk::BufferUsageFlagBits::eVertexBuffer, vkr::MemoryUse::upload, MemoryKind::lists);
   }
   if (!slots.empty()) std::memcpy(buffer.mapped(), slots.data(), slots.size_bytes());
 }

@@ -34,6 +34,11 @@ class Instanced final : public ListStrategy {
     return facts;
   }
 
+  void add_memory(MemoryAccount& to) const override {
+    ListStrategy::add_memory(to);
+    to.add_host(MemoryKind::lists, held_bytes(slots_, mirrored_, draws_));
+  }
+
  private:
   struct Draw {
     std::uint32_t first, count;  // of slots_

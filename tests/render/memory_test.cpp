@@ -49,13 +49,14 @@ struct Way {
   NodeForm form;
 };
 const std::array kWays{Way{"inline", NodeForm::automatic}, Way{"octree", NodeForm::secondaries},
-                       Way{"octree", NodeForm::indirect}, Way{"queries", NodeForm::secondaries},
+                       Way{"octree", NodeForm::indirect},  Way{"queries", NodeForm::secondaries},
                        Way{"queries", NodeForm::indirect}, Way{"adaptive", NodeForm::indirect}};
 
 /// The account after the scene was built up and stood still for some frames.
 MemoryAccount account_of(const Scene& scene, const Way& way) {
   RendererOptions options = test_options();
-  options.device.validation = false;  // the layer keeps books of its own, and takes minutes with so many draws
+  options.device.validation =
+      false;  // the layer keeps books of its own, and takes minutes with so many draws
   options.size = {64, 36};
   options.samples = 1;
   options.outputs = {true, false, false, false};
@@ -90,11 +91,12 @@ double each(const MemoryAccount& account, MemoryKind kind) {
 TEST_CASE("memory of the host is what the allocator gave") {
   const Scene scene = town({4, 4});
   const auto grown = [](std::uint64_t before) { return static_cast<double>(heap_bytes() - before); };
-  // Each allocation costs the allocator 8 B and rounding; nothing that grows with the objects may be missing.
+  // Each allocation costs the allocator 8 B and rounding (4 % of the octree); nothing that grows with the
+  // objects may be missing.
   const auto close = [](std::uint64_t said, double measured) {
     INFO(said << " B said, " << measured << " B taken");
-    CHECK(static_cast<double>(said) <= 1.001 * measured);
-    CHECK(static_cast<double>(said) >= 0.97 * measured);
+    CHECK(static_cast<double>(said) <= 1.005 * measured);
+    CHECK(static_cast<double>(said) >= 0.95 * measured);
   };
   std::uint64_t before = heap_bytes();
   const auto timeline = timeline::compile(scene);
@@ -162,8 +164,8 @@ TEST_CASE("an object costs at most 250 B") {
   const Scene scene = town({5, 4});
   REQUIRE(scene.objects.size() > 49'000);
   for (const Way& way : kWays) {
-    const MemoryAccount account = account_of(scene, way);
     INFO(way.strategy << (way.form == NodeForm::indirect ? " indirect" : ""));
+    const MemoryAccount account = account_of(scene, way);
     // Staging and blocks that are not full do not grow with the objects.
     const double fixed = each(account, MemoryKind::staging) + each(account, MemoryKind::unused);
     CHECK(account.bytes_per_object() - fixed <= 250.0);
@@ -184,8 +186,8 @@ TEST_CASE("an object of a million costs at most 250 B, all told", "[.long]") {
   const Scene scene = town({21, 21});
   REQUIRE(scene.objects.size() > 1'000'000);
   for (const Way& way : kWays) {
-    const MemoryAccount account = account_of(scene, way);
     INFO(way.strategy << (way.form == NodeForm::indirect ? " indirect" : ""));
+    const MemoryAccount account = account_of(scene, way);
     for (std::size_t i = 0; i < kMemoryKinds; ++i)
       UNSCOPED_INFO(kMemoryKindNames[i] << " " << each(account, static_cast<MemoryKind>(i)));
     CHECK(account.bytes_per_object() <= 250.0);

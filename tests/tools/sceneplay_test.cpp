@@ -139,6 +139,18 @@ TEST_CASE("frames: files, names, report and the line at the end") {
   CHECK(report["schema"] == "sceneplay/frames");
   CHECK(report["version"] == 1);
   REQUIRE(report["frames"].size() == 3);
+  std::uint64_t own = 0;
+  std::uint64_t on_device = 0;  // lavapipe has no other memory
+  for (const auto& [kind, bytes] : report["memory"].items()) {
+    const bool other = kind == "geometry" || kind == "textures" || kind == "targets" || kind == "readback";
+    own += other ? 0 : bytes["hostBytes"].get<std::uint64_t>() + bytes["deviceBytes"].get<std::uint64_t>();
+    on_device += bytes["deviceBytes"].get<std::uint64_t>();
+    CHECK(bytes["spilledBytes"] == 0);
+  }
+  CHECK(report["ownBytes"] == own);
+  CHECK(report["bytesPerObject"].get<double>() == Approx(static_cast<double>(own) / 48));
+  if (report["device"]["type"] == "CPU") CHECK(report["deviceBytes"] == on_device);
+  CHECK(report["memory"]["targets"]["deviceBytes"].get<std::uint64_t>() >= 64 * 36 * 4);
   CHECK(report["frames"][0]["visible"] == 4);
   CHECK(report["frames"][2]["visible"] == 48);
   CHECK(report["frames"][1]["timeS"].get<double>() == Approx(report["frames"][2]["timeS"].get<double>() / 2));
