@@ -47,7 +47,7 @@ struct BenchRun {
   std::vector<std::uint64_t> counters;         ///< sums over the frames, in the order of counter_fields()
   std::uint64_t device_bytes = 0;
   std::optional<double> start_ms;  ///< from the scene in memory to the first frame; of a fresh renderer
-  nlohmann::ordered_json memory;  ///< memory_json() after the last frame
+  nlohmann::ordered_json memory;   ///< memory_json() after the last frame
   std::vector<std::string> warnings;
 
   [[nodiscard]] nlohmann::ordered_json json() const;

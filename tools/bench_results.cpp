@@ -118,7 +118,7 @@ ordered_json case_json(const CaseResult& result, std::optional<double> best_ms) 
   out["sameCounters"] = std::all_of(result.runs.begin(), result.runs.end(),
                                     [&](const BenchRun& r) { return r.counters == first.counters; });
   out["deviceBytes"] = first.device_bytes;
-  out.update(first.memory);
+  if (first.memory.is_object()) out.update(first.memory);
   out["warnings"] = result.runs.back().warnings;
   return out;
 }
