@@ -173,7 +173,8 @@ TEST_CASE("an object costs at most 250 B") {
     CHECK(each(account, MemoryKind::records) >= 64.0);
     CHECK(each(account, MemoryKind::slots) >= 32.0);
     CHECK(each(account, MemoryKind::timeline) >= 40.0);
-    const bool octree = way.strategy != "inline" && way.strategy != "adaptive";
+    if (way.strategy == "adaptive") continue;  // what it has built by now depends on the clock
+    const bool octree = way.strategy != "inline";
     if (octree) CHECK(each(account, MemoryKind::octree) >= 9.0);
     const bool indirect = octree && way.form == NodeForm::indirect;
     if (indirect) CHECK(each(account, MemoryKind::indirect) >= 20.0);
