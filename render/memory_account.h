@@ -45,10 +45,15 @@ struct MemoryShare {
 
 /// Command buffers that are kept: what the driver holds for them, beside what the model says.
 struct CommandMemoryReport {
-  std::uint64_t buffers = 0;   ///< allocated
-  std::uint64_t draws = 0;     ///< recorded in them
-  double predicted = 0;        ///< (2.6), bytes
-  std::uint64_t measured = 0;  ///< bytes that the driver asked for, or took from the process
+  std::uint64_t buffers = 0;  ///< allocated
+  std::uint64_t draws = 0;    ///< recorded in them, also in those that wait to be used again
+  std::uint64_t driver = 0;   ///< bytes that the driver holds through allocation callbacks
+  std::int64_t process =
+      0;                 ///< bytes by which the process grew while they were recorded; if that is measured
+  double predicted = 0;  ///< (2.6), bytes
+  /// On a software device what the driver holds, which is all there is; else how the process grew. 0: not
+  /// known.
+  std::uint64_t measured = 0;
 };
 
 struct MemoryAccount {

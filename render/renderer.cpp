@@ -12,6 +12,7 @@
 #include "render/draw_scene.h"
 #include "render/gpu_scene.h"
 #include "render/model/experience.h"
+#include "render/model/memory.h"
 #include "render/passes/draw_recorder.h"
 #include "render/passes/pass_recording.h"
 #include "render/passes/targets.h"
@@ -410,6 +411,12 @@ MemoryAccount Renderer::memory(const timeline::Player& player) const {
   out.add_host(MemoryKind::timeline, player.memory_bytes() + player.timeline().memory_bytes());
   out.add_host(MemoryKind::slots, state_->scene->memory_bytes());
   out.objects = state_->scene->object_count();
+  CommandMemoryReport& commands = out.commands;
+  commands.predicted = model::kept_command_bytes(static_cast<double>(commands.buffers),
+                                                 static_cast<double>(commands.draws), state_->costs);
+  const bool software = state_->device->info.type == "CPU";
+  commands.measured =
+      software ? commands.driver : static_cast<std::uint64_t>(std::max<std::int64_t>(0, commands.process));
   return out;
 }
 std::vector<std::string> Renderer::take_validation_messages() {

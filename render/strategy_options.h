@@ -27,6 +27,8 @@ struct StrategyOptions {
   bool no_indirect_draws = false;
   /// For tests: as if the device had no conditional rendering.
   bool no_conditional_rendering = false;
+  /// How the process grows while commands are kept is measured: some microseconds a frame.
+  bool measure_commands = false;
   /// `adaptive`: predictions are corrected, slowly, by what frames took.
   bool correction = true;
   /// For tests: `adaptive` takes another way every so many frames, whatever it costs; 0: never.

@@ -25,9 +25,20 @@ ordered_json memory_json(const MemoryAccount& account) {
     kinds[std::string(render::kMemoryKindNames[i])] = {
         {"hostBytes", share.host}, {"deviceBytes", share.device}, {"spilledBytes", share.spilled}};
   }
-  return {{"memory", std::move(kinds)},
-          {"ownBytes", account.own_bytes()},
-          {"bytesPerObject", account.bytes_per_object()}};
+  ordered_json out{{"memory", std::move(kinds)},
+                   {"ownBytes", account.own_bytes()},
+                   {"bytesPerObject", account.bytes_per_object()},
+                   {"commandMemory", nullptr}};
+  const render::CommandMemoryReport& commands = account.commands;
+  if (commands.buffers == 0) return out;
+  out["commandMemory"] = {
+      {"buffers", commands.buffers},
+      {"draws", commands.draws},
+      {"predictedBytes", commands.predicted},
+      {"measuredBytes", commands.measured > 0 ? ordered_json(commands.measured) : ordered_json()},
+      {"driverBytes", commands.driver},
+      {"processBytes", commands.process}};
+  return out;
 }
 
 std::string memory_table(const MemoryAccount& account) {
@@ -44,7 +55,13 @@ std::string memory_table(const MemoryAccount& account) {
                own ? ordered_json(static_cast<double>(share.total()) / objects) : ordered_json()});
   }
   table.row({"all but geometry, textures, pictures", nullptr, nullptr, account.bytes_per_object()});
-  return table.str(Format::table);
+  std::string out = table.str(Format::table);
+  const render::CommandMemoryReport& commands = account.commands;
+  if (commands.buffers == 0) return out;
+  out += "driver, for " + human_count(commands.buffers) + " kept command buffers with " +
+         human_count(commands.draws) + " draws: ";
+  out += commands.measured > 0 ? human_bytes(commands.measured) : "not known";
+  return out + " (the model says " + human_bytes(static_cast<std::uint64_t>(commands.predicted)) + ")\n";
 }
 
 }  // namespace scenegen::tools

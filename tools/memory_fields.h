@@ -8,7 +8,8 @@
 
 namespace scenegen::tools {
 
-/// Members "memory" (by kind: hostBytes, deviceBytes, spilledBytes), "ownBytes", "bytesPerObject".
+/// Members "memory" (by kind: hostBytes, deviceBytes, spilledBytes), "ownBytes", "bytesPerObject",
+/// "commandMemory" (null without kept command buffers).
 [[nodiscard]] nlohmann::ordered_json memory_json(const render::MemoryAccount& account);
 /// The same for people, kinds without a byte left out.
 [[nodiscard]] std::string memory_table(const render::MemoryAccount& account);

@@ -58,7 +58,10 @@ std::string table(const render::Calibration& c) {
     };
     if (unit.value != nullptr) {
       const double value = c.costs.*unit.value;
-      add(unit.share ? number_text(value) : duration_text(value), "");
+      add(unit.share   ? number_text(value)
+          : unit.bytes ? number_text(value) + " B"
+                       : duration_text(value),
+          "");
     } else if (unit.curve != nullptr) {
       points(c.costs.*unit.curve, "");
     } else {

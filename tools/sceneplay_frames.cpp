@@ -290,6 +290,7 @@ render::RendererOptions renderer_options(const FramesRequest& request) {
   o.outputs = {true, request.ids, request.depth};
   o.strategy = request.strategy;
   o.predictions = !request.report.empty() || !request.trace.empty();
+  o.how.measure_commands = !request.report.empty() || request.memory;
   o.frames_in_flight = request.frames_in_flight;
   o.chunk_boxes = request.show_nodes;
   return o;

@@ -40,6 +40,7 @@ class Runs {
     o.strategy = strategy;
     o.how.objects_per_node = per_node;
     o.how.node_form = form_;
+    o.how.measure_commands = std::string_view(strategy) == "octree";
     o.how.single_draws = true;  // units are of a draw
     o.shadows = shadows;
     o.predictions = std::string_view(strategy) == "inline";  // for what the model is told of the scenes
@@ -85,6 +86,7 @@ Result<void> measure_octrees(Runs& runs, const Run& flat, bool quick, Fit& fit) 
     kept.emplace_back(n, std::move(*run));
   }
   fit.kept(flat, kept);
+  fit.command_memory(kept);
   Result<Run> each = runs.run("inline-queries", 0, false, quick ? 0.1 : 0.06,
                               [&](const Step& s) { return boxes(s) || s.trial == Trial::hidden_boxes; });
   if (!each) return forward_error(each);

@@ -19,7 +19,8 @@ constexpr std::string_view kSchema = "sceneplay/calibration";
 constexpr int kVersion = 2;
 constexpr std::size_t kMostPoints = 64;      // of a curve
 constexpr std::size_t kMostBytes = 1 << 20;  // a file has 5 kB
-constexpr double kMostSeconds = 100.0;       // no unit takes longer
+constexpr double kMostUnitBytes = 1e9;
+constexpr double kMostSeconds = 100.0;  // no unit takes longer
 
 ordered_json curve_json(const model::Curve& curve) {
   return {{"x", curve.x}, {"y", curve.y}};
@@ -121,7 +122,10 @@ class Reader {
 void read_units(Reader& in, model::UnitCosts& costs) {
   for (const UnitName& unit : unit_names()) {
     if (unit.value != nullptr) {
-      costs.*unit.value = in.number(unit.name, 0.0, unit.share ? 1.0 : kMostSeconds);
+      costs.*unit.value = in.number(unit.name, 0.0,
+                                    unit.share   ? 1.0
+                                    : unit.bytes ? kMostUnitBytes
+                                                 : kMostSeconds);
     } else if (unit.curve != nullptr) {
       costs.*unit.curve = in.curve(unit.name);
     } else if (const json* both = in.member(unit.name)) {

@@ -47,6 +47,7 @@ class Fit {
   void shadows(const Run& with, const Run& without);
   /// Runs of `octree` by objects a node, ascending.
   void kept(const Run& flat, const std::vector<std::pair<std::uint32_t, Run>>& runs);
+  void command_memory(const std::vector<std::pair<std::uint32_t, Run>>& runs);
   void listed(const Run& run);
   void queries(const Run& flat, const Run& each);
   void second_part(const Run& kept, const Run& asking);

@@ -62,7 +62,9 @@ class Measuring {
     }
     for (const std::string& message : renderer_.take_validation_messages())
       return fail(ErrorKind::no_device, "validation", message);
+    const CommandMemoryReport commands = renderer_.memory(player_).commands;
     for (std::size_t i = 0; i < results_.size(); ++i) {
+      results_[i].commands = commands;
       results_[i].steady = medians(samples_[i].steady);
       results_[i].first = medians(samples_[i].first);
       results_[i].leave_record_s = median(samples_[i].leave);

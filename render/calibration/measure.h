@@ -29,6 +29,7 @@ struct Measured {
   double period_s = 0;        ///< from frame to frame, two in flight; 0: not measured
   FrameReport report;         ///< counts of a steady frame
   FrameReport first_report;
+  CommandMemoryReport commands;  ///< of all steps together, at the end
   std::size_t samples = 0;
 };
 

@@ -37,6 +37,10 @@ std::uint64_t grouped_command_bytes(std::span<const std::uint64_t> groups, std::
       [&](std::uint64_t sum, std::uint64_t group) { return sum + std::max(secondary, group); });
 }
 
+double kept_command_bytes(double buffers, double draws, const UnitCosts& units) {
+  return buffers * units.secondary_bytes + draws * units.command_bytes;
+}
+
 std::uint64_t pipeline_bytes(std::span<const Share> pipelines) {
   return sum_of(pipelines);
 }

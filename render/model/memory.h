@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <span>
 
+#include "render/model/unit_costs.h"
+
 namespace scenegen::render::model {
 
 struct GeometryCounts {
@@ -34,6 +36,9 @@ struct Share {
 /// (2.6) sum over groups of max(M_sec, M_cmds(group)); `groups` are their command bytes.
 [[nodiscard]] std::uint64_t grouped_command_bytes(std::span<const std::uint64_t> groups,
                                                   std::uint64_t secondary);
+/// The same for so many buffers with so many draws in all. Unlike (2.6) a buffer's own part is not hidden
+/// behind its draws: lavapipe takes M_sec for every buffer and M_cmd for every draw.
+[[nodiscard]] double kept_command_bytes(double buffers, double draws, const UnitCosts& units);
 /// (2.7) sum over materials of M_pipeline; several materials may share one.
 [[nodiscard]] std::uint64_t pipeline_bytes(std::span<const Share> pipelines);
 /// (2.8) |objects| M(object) + |materials| M(material).

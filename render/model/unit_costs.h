@@ -65,6 +65,10 @@ struct UnitCosts {
   double shadow_vertex_s = 0;       ///< one vertex in the shadow map's pass
   double empty_device_s = 0;        ///< T_0
 
+  // What the driver holds, bytes.
+  double secondary_bytes = 0;  ///< M_sec: a kept command buffer by itself
+  double command_bytes = 0;    ///< M_cmd: a draw in it
+
   // How far work is done side by side: 1 all of the shorter part, as (2.11) and (2.12) have it; 0 none.
   double stage_overlap = 1;     ///< vertices with fragments
   double triangle_overlap = 1;  ///< vertices with triangles: GPUs have units for each, processors not

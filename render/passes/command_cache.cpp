@@ -10,11 +10,12 @@ namespace scenegen::render {
 
 CommandCache::CommandCache(const vkr::Device& device, std::uint64_t fail_after)
     : device_(device),
-      pool_(device.device, {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family}),
+      pool_(device.device, {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family},
+            heap_.callbacks()),
       fail_after_(fail_after) {}
 
 void CommandCache::retire(Kept& kept) {
-  if (*kept.owner) {
+  if (*kept.owner.commands) {
     retired_.push_back({});  // may throw: what may be running must not have been moved by then
     retired_.back() = {std::move(kept.owner), kept.last_used};
   }
@@ -27,7 +28,7 @@ void CommandCache::forget() {
   }
 }
 
-vk::raii::CommandBuffer CommandCache::take(std::uint64_t completed) {
+CommandCache::Buffer CommandCache::take(std::uint64_t completed) {
   // In order of retirement, which is nearly that of last use: one that waits holds back those behind it for a
   // frame or two, no more.
   while (!retired_.empty() && retired_.front().last_used <= completed) {
@@ -40,35 +41,38 @@ vk::raii::CommandBuffer CommandCache::take(std::uint64_t completed) {
       throw vk::OutOfDeviceMemoryError("allocating command buffers (fault injected)");
     vk::raii::CommandBuffers made(device_.device, {*pool_, vk::CommandBufferLevel::eSecondary, kAtOnce});
     allocated_ += kAtOnce;
-    for (vk::raii::CommandBuffer& one : made) free_.push_back(std::move(one));
+    for (vk::raii::CommandBuffer& one : made) free_.push_back({std::move(one), 0});
   }
-  vk::raii::CommandBuffer out = std::move(free_.back());
+  Buffer out = std::move(free_.back());
   free_.pop_back();
   return out;
 }
 
 void CommandCache::record(const PassRecording& pass, Kept& kept, std::span<const std::uint32_t> slots) {
   const PassContext& context = pass.context();
+  const vk::raii::CommandBuffer& commands = kept.owner.commands;
+  draws_ -= std::exchange(kept.owner.draws, 0);
   // Several frames may have it in flight at once.
-  begin_secondary(kept.owner, context.pipelines, pass.target(),
+  begin_secondary(commands, context.pipelines, pass.target(),
                   vk::CommandBufferUsageFlagBits::eSimultaneousUse);
   // Neither is inherited: begun and ended in here, at a fixed place.
   if (kept.predicates) {
-    kept.owner.beginConditionalRenderingEXT(
+    commands.beginConditionalRenderingEXT(
         vk::ConditionalRenderingBeginInfoEXT(kept.predicates, predicate_offset(kept.chunk)));
   }
-  DrawRecorder recorder(kept.owner, context.pipelines, context.gpu, context.scene, pass.target().pass);
+  DrawRecorder recorder(commands, context.pipelines, context.gpu, context.scene, pass.target().pass);
   for (const std::uint32_t slot : slots) recorder.draw(slot);
-  if (kept.predicates) kept.owner.endConditionalRenderingEXT();
-  kept.owner.end();
-  kept.entry = {*kept.owner, recorder.recorded()};
+  if (kept.predicates) commands.endConditionalRenderingEXT();
+  commands.end();
+  kept.entry = {*commands, recorder.recorded()};
+  draws_ += kept.owner.draws = recorder.recorded().draws;
   ++counters_.recorded;
   counters_.recorded_draws += recorder.recorded().draws;
 }
 
 bool CommandCache::fresh(std::uint32_t chunk, std::uint64_t revision) const {
   const std::vector<Kept>& of_pass = kept_[kept_[0].empty() ? 1 : 0];
-  return chunk < of_pass.size() && *of_pass[chunk].owner && of_pass[chunk].revision == revision;
+  return chunk < of_pass.size() && *of_pass[chunk].owner.commands && of_pass[chunk].revision == revision;
 }
 
 const CommandCache::Entry& CommandCache::get(const PassRecording& pass, std::uint32_t chunk,
@@ -78,7 +82,7 @@ const CommandCache::Entry& CommandCache::get(const PassRecording& pass, std::uin
   std::vector<Kept>& of_pass = kept_[pass.target().pass == vkr::PassKind::color ? 0 : 1];
   if (of_pass.size() <= chunk) of_pass.resize(std::max<std::size_t>(chunk + 1, of_pass.size() * 2));
   Kept& kept = of_pass[chunk];
-  if (!*kept.owner || kept.revision != revision || kept.predicates != predicates) {
+  if (!*kept.owner.commands || kept.revision != revision || kept.predicates != predicates) {
     retire(kept);
     kept.predicates = predicates;
     kept.chunk = chunk;
@@ -92,6 +96,9 @@ const CommandCache::Entry& CommandCache::get(const PassRecording& pass, std::uin
 
 void CommandCache::add_memory(MemoryAccount& to) const {
   to.add_host(MemoryKind::commands, held_bytes(free_, retired_, kept_[0], kept_[1]));
+  to.commands.buffers += allocated_;
+  to.commands.draws += draws_;
+  to.commands.driver += heap_.bytes();
 }
 
 }  // namespace scenegen::render

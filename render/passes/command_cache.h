@@ -8,6 +8,7 @@
 #include <vulkan/vulkan_raii.hpp>
 
 #include "render/passes/pass_recording.h"
+#include "render/vk/driver_heap.h"
 
 namespace scenegen::render {
 
@@ -42,11 +43,16 @@ class CommandCache {
   };
   [[nodiscard]] Counters take_counters() { return std::exchange(counters_, {}); }
   [[nodiscard]] std::uint64_t buffers() const { return allocated_; }
+  /// Host memory held, and what the driver holds for the buffers.
   void add_memory(MemoryAccount& to) const;
 
  private:
+  struct Buffer {
+    vk::raii::CommandBuffer commands{nullptr};
+    std::uint64_t draws = 0;  // in it, until it is recorded again
+  };
   struct Kept {
-    vk::raii::CommandBuffer owner{nullptr};
+    Buffer owner;
     Entry entry;
     std::uint64_t revision = 0;
     std::uint64_t last_used = 0;  // serial of a frame
@@ -54,19 +60,21 @@ class CommandCache {
     std::uint32_t chunk = 0;
   };
   struct Retired {
-    vk::raii::CommandBuffer owner{nullptr};
+    Buffer owner;
     std::uint64_t last_used = 0;
   };
   void retire(Kept& kept);
-  vk::raii::CommandBuffer take(std::uint64_t completed);
+  Buffer take(std::uint64_t completed);
   void record(const PassRecording& pass, Kept& kept, std::span<const std::uint32_t> slots);
 
   const vkr::Device& device_;
+  vkr::DriverHeap heap_;  // outlives the pool
   vk::raii::CommandPool pool_{nullptr};
-  std::vector<vk::raii::CommandBuffer> free_;
+  std::vector<Buffer> free_;
   std::deque<Retired> retired_;
   std::vector<Kept> kept_[2];  // by pass (color, ids) and chunk
   std::uint64_t allocated_ = 0;
+  std::uint64_t draws_ = 0;  // in all buffers
   std::uint64_t fail_after_;
   Counters counters_;
 };

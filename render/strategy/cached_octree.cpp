@@ -171,6 +171,7 @@ void CachedOctree::add_memory(MemoryAccount& to) const {
   if (cache_) {
     to.add_host(MemoryKind::commands, held_bytes(kept_));
     cache_->add_memory(to);
+    to.commands.process += process_growth_;
   }
   if (nodes_) to.add_host(MemoryKind::indirect, nodes_->memory_bytes());
 }
@@ -185,6 +186,7 @@ std::vector<ChunkBox> CachedOctree::chunk_boxes() const {
 void CachedOctree::keep_secondaries(PassRecording& pass, std::span<const std::uint32_t> chunks,
                                     vk::Buffer predicates) {
   if (kept_.size() < tree().chunk_numbers()) kept_.resize(tree().chunk_numbers());
+  const std::uint64_t before = context_.options.measure_commands ? vkr::process_bytes() : 0;
   for (const std::uint32_t number : chunks) {
     const Octree::Chunk& chunk = tree().chunk(number);
     std::span<const std::uint32_t> slots = chunk.slots;
@@ -197,6 +199,8 @@ void CachedOctree::keep_secondaries(PassRecording& pass, std::span<const std::ui
   const CommandCache::Counters recorded = cache_->take_counters();
   counters_.recorded += recorded.recorded;
   counters_.recorded_draws += recorded.recorded_draws;
+  if (context_.options.measure_commands && recorded.recorded > 0)
+    process_growth_ += static_cast<std::int64_t>(vkr::process_bytes() - before);
 }
 
 void CachedOctree::prepare(PassRecording& pass, std::span<const std::uint32_t> chunks,

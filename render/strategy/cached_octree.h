@@ -129,6 +129,7 @@ class CachedOctree : public Strategy {
   std::vector<std::uint32_t> reversed_;
   std::vector<CommandCache::Entry> kept_;  // by chunk, of this pass
   std::vector<vk::CommandBuffer> buffers_;
+  std::int64_t process_growth_ = 0;  // while commands were recorded, bytes
 };
 
 }  // namespace scenegen::render

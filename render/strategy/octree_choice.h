@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "render/model/octree_size.h"
+#include "render/spatial/octree.h"
 #include "render/strategy/strategy.h"
 
 namespace scenegen::render {
@@ -20,10 +21,15 @@ constexpr std::uint32_t kObjectsPerNode = 200;
 /// takes it 13.8 ms with 200, 12.9 with 500; queries lose nothing (docs/BENCHMARKS.md).
 constexpr std::uint32_t kObjectsPerIndirectNode = 500;
 
-/// Seen on lavapipe; 150 B a node and 120 B a chunk are ours.
-constexpr model::CommandMemory kSecondaryMemory{270, 6900, 170};
+/// M_node: a node and a chunk of it.
+constexpr std::uint64_t kNodeBytes = sizeof(Octree::Node) + sizeof(Octree::Chunk);
+/// What an octree with kept command buffers takes, by the unit costs.
+[[nodiscard]] inline model::CommandMemory secondary_memory(const model::UnitCosts& costs) {
+  return {kNodeBytes, static_cast<std::uint64_t>(costs.secondary_bytes),
+          static_cast<std::uint64_t>(costs.command_bytes)};
+}
 /// Indirect draws: 20 B each, in places that are a sixteenth too large in the mean.
-constexpr model::CommandMemory kIndirectMemory{270, 0, 22};
+constexpr model::CommandMemory kIndirectMemory{kNodeBytes, 0, 22};
 
 /// Can this device draw chunks by indirect draws, and is it to?
 [[nodiscard]] bool can_draw_indirect(const StrategyContext& context);
@@ -35,7 +41,8 @@ constexpr model::CommandMemory kIndirectMemory{270, 0, 22};
 [[nodiscard]] inline std::optional<std::uint32_t> choose_objects_per_node(const StrategyContext& context) {
   const StrategyOptions& o = context.options;
   const std::uint64_t objects = context.scene.solid_end();
-  const model::CommandMemory& units = indirect_nodes(context) ? kIndirectMemory : kSecondaryMemory;
+  const model::CommandMemory units =
+      indirect_nodes(context) ? kIndirectMemory : secondary_memory(context.costs);
   if (o.objects_per_node == 0)
     return model::objects_per_node(objects, o.octree_bytes, units,
                                    indirect_nodes(context) ? kObjectsPerIndirectNode : kObjectsPerNode);

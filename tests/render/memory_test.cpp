@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "gen/generate.h"
+#include "render/calibration/calibration.h"
 #include "render/spatial/scene_octree.h"
 #include "render/vk/memory.h"
 #include "tests/render/render_support.h"
@@ -180,6 +181,55 @@ TEST_CASE("an object costs at most 250 B") {
     if (indirect) CHECK(each(account, MemoryKind::indirect) >= 20.0);
     CHECK((account[MemoryKind::commands].total() > 0) == (octree && !indirect));
     CHECK((account[MemoryKind::queries].total() > 0) == (way.strategy == "queries"));
+  }
+}
+
+TEST_CASE("what the driver takes for kept commands is what the model says, within 15 %") {
+  // Calibrated on boxes with one material, in chunks of 10, 100 and 1000.
+  CalibrationOptions how;
+  how.size = {64, 36};
+  how.samples = 1;
+  how.shadows = false;
+  how.budget_s = 0.5;
+  const auto calibration = calibrate(how);
+  REQUIRE(calibration);
+  CHECK(calibration->costs.secondary_bytes > 500);
+  CHECK(calibration->costs.command_bytes > 20);
+  const auto measured = [&](const char* unit) {
+    return std::find(calibration->not_measured.begin(), calibration->not_measured.end(), unit) ==
+           calibration->not_measured.end();
+  };
+  CHECK(measured("secondaryBytes"));
+  CHECK(measured("commandBytes"));
+  // And predicted for a town of 24 000 bricks of many meshes, as it grows.
+  const Scene scene = town({5, 2});
+  for (const std::uint32_t per_node : {20U, 200U}) {
+    RendererOptions options = test_options();
+    options.device.validation = false;  // what it keeps is counted neither way
+    options.size = how.size;
+    options.samples = 1;
+    options.outputs = {true, false, false, false};
+    options.strategy = "octree";
+    options.how.node_form = NodeForm::secondaries;
+    options.how.objects_per_node = per_node;
+    options.costs = calibration->costs;
+    const View view = from_above(scene, options.size);
+    timeline::Player player(timeline::compile(scene));
+    auto renderer = Renderer::create(scene, player, options);
+    REQUIRE(renderer);
+    FrameResult frame;
+    for (const double share : {0.3, 0.6, 1.0}) {
+      REQUIRE(renderer->submit(player.seek(share * static_cast<double>(scene.duration_s)), player, view));
+      REQUIRE(renderer->finish(frame));
+      const CommandMemoryReport commands = renderer->memory(player).commands;
+      INFO(per_node << " a node, " << share << ": " << commands.buffers << " buffers, " << commands.draws
+                    << " draws, " << commands.measured << " B, predicted " << commands.predicted);
+      CHECK(static_cast<double>(commands.draws) > 0.9 * static_cast<double>(frame.report.draws));
+      CHECK(commands.buffers >= frame.report.chunks);
+      if (renderer->device().type != "CPU") continue;  // how the process grows is noise for so few
+      CHECK(static_cast<double>(commands.measured) > 100.0 * static_cast<double>(commands.draws));
+      CHECK(commands.predicted == Approx(static_cast<double>(commands.measured)).epsilon(0.15));
+    }
   }
 }
 
