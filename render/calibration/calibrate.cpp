@@ -40,7 +40,6 @@ class Runs {
     o.strategy = strategy;
     o.how.objects_per_node = per_node;
     o.how.node_form = form_;
-    o.how.measure_commands = std::string_view(strategy) == "octree";
     o.how.single_draws = true;  // units are of a draw
     o.shadows = shadows;
     o.predictions = std::string_view(strategy) == "inline";  // for what the model is told of the scenes

@@ -360,13 +360,13 @@ void Fit::walking(const Run& flat, const std::vector<std::pair<std::uint32_t, Ru
 }
 
 /// M_sec and M_cmd: what the driver took for buffers with few and with many draws. With one size of them only
-/// (quick), M_sec stays rough.
+/// (quick), M_sec stays rough. Where only the growth of the process is known, so few tell nothing.
 void Fit::command_memory(const std::vector<std::pair<std::uint32_t, Run>>& runs) {
   double bb = 0.0, bd = 0.0, dd = 0.0, bm = 0.0, dm = 0.0;  // least squares of m = b M_sec + d M_cmd
   std::size_t known = 0;
   for (const auto& one : runs) {
     const CommandMemoryReport& m = one.second.results.front().commands;
-    if (m.draws == 0 || m.measured == 0) continue;
+    if (m.draws == 0 || m.measured == 0 || m.measured != m.driver) continue;
     // Relative deviations count, not those of the largest run.
     const double b = static_cast<double>(m.buffers) / static_cast<double>(m.measured);
     const double d = static_cast<double>(m.draws) / static_cast<double>(m.measured);

@@ -60,8 +60,9 @@ UnitCosts rough_costs(bool software_device) {
   c.second_part_device_s = software_device ? 100e-6 : 30e-6;
   c.shadow_slot_s = 3e-9;
   c.shadow_vertex_s = software_device ? 20e-9 : 0.5e-9;
-  c.secondary_bytes = software_device ? 6900 : 4096;
-  c.command_bytes = software_device ? 170 : 64;
+  // lavapipe; NVIDIA H200 (driver 580), by the growth of the process (docs/BENCHMARKS.md).
+  c.secondary_bytes = software_device ? 7600 : 24500;
+  c.command_bytes = software_device ? 150 : 61;
   c.stage_overlap = software_device ? 0.5 : 1.0;
   c.triangle_overlap = software_device ? 0.0 : 1.0;
   c.node_overlap = software_device ? 0.0 : 0.6;
