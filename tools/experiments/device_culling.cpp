@@ -38,8 +38,10 @@ DeviceCulling::DeviceCulling(DrawStage& stage)
   }
   const auto uploaded = [&](const auto& data, vk::BufferUsageFlags usage, Use use) {
     const std::uint64_t bytes = data.size() * sizeof(data[0]);
-    const render::vkr::Buffer from = stage.memory().buffer(bytes, Usage::eTransferSrc, MemoryUse::upload);
-    render::vkr::Buffer to = stage.memory().buffer(bytes, usage | Usage::eTransferDst, MemoryUse::device);
+    const render::vkr::Buffer from =
+        stage.memory().buffer(bytes, Usage::eTransferSrc, MemoryUse::upload, render::MemoryKind::staging);
+    render::vkr::Buffer to = stage.memory().buffer(bytes, usage | Usage::eTransferDst, MemoryUse::device,
+                                                   render::MemoryKind::indirect);
     std::memcpy(from.mapped(), data.data(), bytes);
     render::vkr::run_once(stage.device(), [&](const vk::raii::CommandBuffer& c) {
       c.copyBuffer(*from.buffer, *to.buffer, vk::BufferCopy(0, 0, bytes));
@@ -92,7 +94,8 @@ void DeviceCulling::record(const render::PassContext& context) {
 
 std::uint32_t DeviceCulling::drawn() {
   const std::uint64_t bytes = count_ * sizeof(VkDrawIndexedIndirectCommand);
-  const render::vkr::Buffer back = stage_.memory().buffer(bytes, Usage::eTransferDst, MemoryUse::readback);
+  const render::vkr::Buffer back =
+      stage_.memory().buffer(bytes, Usage::eTransferDst, MemoryUse::readback, render::MemoryKind::readback);
   render::vkr::run_once(stage_.device(), [&](const vk::raii::CommandBuffer& c) {
     render::vkr::Barriers().buffer(*commands_.buffer, Use::compute_write, Use::transfer_read).flush(c);
     c.copyBuffer(*commands_.buffer, *back.buffer, vk::BufferCopy(0, 0, bytes));

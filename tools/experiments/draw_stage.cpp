@@ -87,7 +87,8 @@ StageFrame DrawStage::frame(const std::function<void(const render::PassContext&)
 std::vector<std::uint8_t> DrawStage::read_picture() {
   const std::uint64_t bytes = std::uint64_t{4} * target_.extent.width * target_.extent.height;
   const render::vkr::Buffer back =
-      memory_.buffer(bytes, vk::BufferUsageFlagBits::eTransferDst, render::vkr::MemoryUse::readback);
+      memory_.buffer(bytes, vk::BufferUsageFlagBits::eTransferDst, render::vkr::MemoryUse::readback,
+                     render::MemoryKind::readback);
   frame([&](const render::PassContext& c) {
     render::record_readback(c.frame.commands, target_.result(), back, c.barriers);
   });

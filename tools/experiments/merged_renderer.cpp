@@ -89,7 +89,8 @@ Result<std::unique_ptr<MergedRenderer>> MergedRenderer::make(const ExperimentCon
       out->geometries_.push_back(render::make_draw_geometry(g));
       render::share_vertices(out->geometries_.back(), render::TriangleOrder::free);  // as the renderer does
     }
-    out->upload_ = s.memory().buffer(kPiece, Usage::eTransferSrc, MemoryUse::upload);
+    out->upload_ =
+        s.memory().buffer(kPiece, Usage::eTransferSrc, MemoryUse::upload, render::MemoryKind::staging);
     out->pool_ = vk::raii::CommandPool(
         s.device().device, {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, s.device().queue_family});
     out->commands_ = std::move(
@@ -137,8 +138,9 @@ void MergedRenderer::reserve() {
   const auto grown = [&](render::vkr::Buffer& buffer, std::uint64_t bytes, vk::BufferUsageFlags usage) {
     if (buffer.bytes >= bytes && buffer.bytes > 0) return;
     buffer = {};
-    buffer = stage_->memory().buffer(std::max<std::uint64_t>(bytes + bytes / 4, 4096),
-                                     usage | Usage::eTransferDst, MemoryUse::scene);
+    buffer =
+        stage_->memory().buffer(std::max<std::uint64_t>(bytes + bytes / 4, 4096), usage | Usage::eTransferDst,
+                                MemoryUse::scene, render::MemoryKind::geometry);
   };
   grown(positions_, vertices_ * sizeof(glm::vec3), Usage::eVertexBuffer);
   grown(attributes_, vertices_ * sizeof(render::VertexAttributes), Usage::eVertexBuffer);
