@@ -55,8 +55,8 @@ Result<Case> measure(const ExperimentContext& context, const Scene& scene,
   std::vector<double> times_ms;
   std::vector<double> predicted_ms;
   const Stopwatch all;
-  constexpr double kPatience_s = 1.0;
-  for (std::size_t i = 0; i < kWarm + 3 || (times_ms.size() < frames && all.seconds() < kPatience_s); ++i) {
+  constexpr double kPatienceS = 1.0;
+  for (std::size_t i = 0; i < kWarm + 3 || (times_ms.size() < frames && all.seconds() < kPatienceS); ++i) {
     const Stopwatch watch;
     if (auto done = renderer->submit(player.seek(end_s), player, view); !done) return forward_error(done);
     if (auto done = renderer->finish(frame); !done) return forward_error(done);
