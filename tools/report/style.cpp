@@ -2,8 +2,9 @@
 
 namespace scenegen::tools {
 
-std::string_view report_style() {
-  return R"css(:root {
+namespace {
+
+constexpr std::string_view kStyle = R"css(:root {
   color-scheme: light dark;
   --paper: #fff; --text: #1b1f24; --muted: #59616b; --line: #d9dde2; --soft: #f4f6f8; --link: #1d5fb0;
   --better: #1a7a45; --worse: #b23b12; --level: #6a7078;
@@ -144,6 +145,11 @@ details .scroll { margin-top: 0.5rem; max-height: 24rem; }
   .picture img { max-height: 120mm; width: auto; }
 }
 )css";
+
+}  // namespace
+
+std::string_view report_style() {
+  return kStyle;
 }
 
 }  // namespace scenegen::tools
