@@ -81,7 +81,9 @@ Result<void> write_csv(const ReportRequest& r, const RunReport& report) {
   const auto files = report_csv(report);
   if (r.output == "-") {
     std::string all;
-    for (const auto& [name, text] : files) all += (all.empty() ? "# " : "\n# ") + name + "\n" + text;
+    for (const auto& [name, text] : files) {
+      all.append(all.empty() ? "# " : "\n# ").append(name).append("\n").append(text);
+    }
     return write_stdout(all);
   }
   std::error_code error;
@@ -112,6 +114,7 @@ Result<int> run(const ReportRequest& r) {
   const Result<RunReport> report = read_all(r, files);
   if (!report) return tl::unexpected(report.error());
   std::vector<NamedPath> inputs;
+  inputs.reserve(files.size());
   for (const std::string& file : files) inputs.push_back({"RESULTS", file});
   if (auto apart = check_distinct_files({{"--output", r.output}}, inputs); !apart)
     return forward_error(apart);
