@@ -18,7 +18,8 @@ std::string signed_percent(double share) {
 }
 
 std::string number(double value) {
-  return value == std::round(value) ? human_count(static_cast<std::uint64_t>(value)) : human_real(value, 3);
+  const bool whole = value == std::round(value) && value >= 0 && value < 1e15;
+  return whole ? human_count(static_cast<std::uint64_t>(value)) : human_real(value, 3);
 }
 
 std::string group_name(const BenchCase& what) {

@@ -14,6 +14,7 @@
 
 #include "tools/bench_results.h"
 #include "tools/output.h"
+#include "tools/text.h"
 
 namespace scenegen::tools {
 namespace {
@@ -108,7 +109,7 @@ Result<std::optional<BenchRun>> RunStore::find(const BenchCase& what, std::uint3
   const std::string from = path(what, repetition);
   std::ifstream file(from, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  const ordered_json json = ordered_json::parse(text, nullptr, false);
+  const ordered_json json = json_too_deep(text) ? ordered_json() : ordered_json::parse(text, nullptr, false);
   if (!json.is_object() || !json.contains("settings") || !json.contains("run") ||
       json.value("case", "") != what.key())
     return std::optional<BenchRun>();

@@ -16,6 +16,7 @@
 
 #include "scene/temporary_files.h"
 #include "tools/output.h"
+#include "tools/text.h"
 
 namespace scenegen::tools {
 
@@ -264,6 +265,7 @@ Result<nlohmann::ordered_json> read_config_file(const std::string& path) {
   auto text = read_small_file(path);
   if (!text) return forward_error(text);
   nlohmann::ordered_json document;
+  if (json_too_deep(*text)) return fail(ErrorKind::bad_input, path, "is nested deeper than 64 levels");
   try {
     document = nlohmann::ordered_json::parse(*text);
   } catch (const nlohmann::json::exception& error) {

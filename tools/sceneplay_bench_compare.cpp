@@ -64,8 +64,7 @@ Result<int> work(const CompareRequest& r) {
       (void)std::fprintf(stderr, "warning: %s\n", printable(warning).c_str());
   }
   if (auto written = write_stdout(text_of(*found, r.format)); !written) return forward_error(written);
-  if (found->cases.empty() && r.fail_on == FailOn::nothing)
-    return fail(ErrorKind::bad_input, r.b, "has no case in common with " + r.a);
+  if (found->cases.empty()) return fail(ErrorKind::bad_input, r.b, "has no case in common with " + r.a);
   return fails(*found, r.fail_on) ? 1 : 0;
 }
 

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <new>
+#include <stdexcept>
 
 #include "scene/limits.h"
 #include "tools/bench_results.h"
@@ -91,6 +93,18 @@ class Laboratory {
     return {};
   }
 
+  /// An experiment that runs out of memory or over a limit of the device is one that failed: the rest goes
+  /// on.
+  Result<DocumentSection> guarded_run(const Experiment& experiment) const {
+    try {
+      return experiment.run(context_);
+    } catch (const std::bad_alloc&) {
+      return fail(ErrorKind::bad_input, std::string(experiment.name), "out of memory");
+    } catch (const std::runtime_error& error) {
+      return fail(ErrorKind::no_device, std::string(experiment.name), error.what());
+    }
+  }
+
   Result<DocumentSection> run_one(const Experiment& experiment) {
     if (experiment.draws && !context_.device) return tl::unexpected<Error>(*no_device_);
     if (experiment.uses_costs && !context_.costs) {
@@ -106,7 +120,7 @@ class Laboratory {
     }
     progress_.stage(std::string(experiment.name));
     const Stopwatch watch;
-    auto section = experiment.run(context_);
+    auto section = guarded_run(experiment);
     if (section) seconds_.emplace_back(experiment.name, watch.seconds());
     return section;
   }

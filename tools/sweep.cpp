@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 
 #include "tools/text.h"
@@ -217,7 +218,8 @@ ordered_json scene_entry(const SweepScene& scene, const Made& made, const FileDi
 std::vector<ordered_json> entries_kept(const SweepPlan& plan, const std::string& folder) {
   std::vector<ordered_json> out(plan.scenes.size());
   std::ifstream in(fs::path(folder) / "index.json", std::ios::binary);
-  const ordered_json index = ordered_json::parse(in, nullptr, false);
+  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  const ordered_json index = json_too_deep(text) ? ordered_json() : ordered_json::parse(text, nullptr, false);
   const auto is = [](const ordered_json& json, const char* name, const ordered_json& value) {
     return json.is_object() && json.contains(name) && json[name] == value;
   };

@@ -104,7 +104,9 @@ model::FrameFacts QueryOctree::facts() const {
 void QueryOctree::add_memory(MemoryAccount& to) const {
   CachedOctree::add_memory(to);
   std::uint64_t bytes = 0;
-  for (const std::unique_ptr<Occlusion>& of_pass : occlusion_) bytes += of_pass->memory_bytes();
+  for (const std::unique_ptr<Occlusion>& of_pass : occlusion_) {
+    if (of_pass) bytes += of_pass->memory_bytes();  // none once the tree was given up
+  }
   for (const QueryPlan& plan : plans_)
     bytes += held_bytes(plan.first, plan.second, plan.asked, plan.governed);
   to.add_host(MemoryKind::queries, bytes);

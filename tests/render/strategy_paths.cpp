@@ -242,6 +242,7 @@ Run run_path(const Path& path, RendererOptions options) {
   }
   while (renderer->in_flight() > 0) finish();
   run.warnings = renderer->warnings();
+  CHECK(renderer->memory(player).own_bytes() > 0);  // also of a tree that was given up
   for (const std::string& message : renderer->take_validation_messages()) FAIL_CHECK(message);
   return run;
 }

@@ -97,3 +97,14 @@ TEST_CASE("lines break at blanks") {
   CHECK(wrap("unbreakable", 3) == std::vector<std::string>{"unbreakable"});
   CHECK(display_width("naïve") == 5);
 }
+
+TEST_CASE("JSON that is nested too deeply is told from JSON with brackets in its words") {
+  CHECK_FALSE(json_too_deep(""));
+  CHECK_FALSE(json_too_deep(std::string(64, '[') + std::string(64, ']')));
+  CHECK(json_too_deep(std::string(65, '[') + std::string(65, ']')));
+  CHECK(json_too_deep(std::string(200'000, '{')));
+  CHECK_FALSE(json_too_deep("[\"" + std::string(100, '[') + "\\\"" + std::string(100, '{') + "\"]"));
+  std::string flat = "[";
+  for (int i = 0; i < 1000; ++i) flat += "[1],";
+  CHECK_FALSE(json_too_deep(flat + "1]"));
+}
