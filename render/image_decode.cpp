@@ -17,7 +17,8 @@
 
 namespace scenegen::render {
 
-Result<DecodedImage> decode_image(std::span<const std::uint8_t> bytes, const std::string& where) {
+Result<DecodedImage> decode_image(std::span<const std::uint8_t> bytes, const std::string& where,
+                                  std::uint64_t most_texels) {
   constexpr std::size_t kMostBytes = 0x7FFFFFFF;
   if (bytes.empty() || bytes.size() > kMostBytes)
     return fail(ErrorKind::bad_input, where, "no image of a size that can be decoded");
@@ -32,6 +33,10 @@ Result<DecodedImage> decode_image(std::span<const std::uint8_t> bytes, const std
     return fail(ErrorKind::bad_input, where,
                 std::to_string(width) + "x" + std::to_string(height) + " texels; at most " +
                     std::to_string(kMost) + " a side");
+  if (static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) > most_texels)
+    return fail(ErrorKind::bad_input, where,
+                std::to_string(width) + "x" + std::to_string(height) + " texels; at most " +
+                    std::to_string(most_texels) + " in all");
   const std::unique_ptr<stbi_uc, void (*)(void*)> texels(
       stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 4), stbi_image_free);
   if (!texels)

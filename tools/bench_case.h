@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -25,6 +26,12 @@ struct BenchWay {
 };
 /// Entries separated by commas. The error names the nearest strategy or modifier; its `where` is empty.
 [[nodiscard]] Result<std::vector<BenchWay>> parse_ways(std::string_view text);
+
+/// Results may be from other folders and machines: scenes and cameras are known by the last part of their
+/// path.
+[[nodiscard]] inline std::string base_name(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
 
 struct BenchCase {
   std::string file;

@@ -30,10 +30,6 @@ Moments moments_of(const std::vector<double>& values) {
   return m;
 }
 
-std::string base_name(const std::string& path) {
-  return fs::path(path).filename().string();
-}
-
 /// A case as it stands in a file.
 struct Entry {
   BenchCase what;
@@ -64,11 +60,31 @@ Results results_of(const ordered_json& bench) {
   return out;
 }
 
-std::string key_of(BenchCase what, bool with_device) {
-  what.file = base_name(what.file);
-  what.camera = base_name(what.camera);
-  if (!with_device) what.device.clear();
-  return what.key();
+/// What of a case must be equal for it to be the same in both results.
+struct Likeness {
+  bool device = false;       ///< else there is one in each, and they are compared
+  bool whole_paths = false;  ///< else results of other folders can be compared too
+
+  [[nodiscard]] std::string key(BenchCase what) const {
+    if (!whole_paths) {
+      what.file = base_name(what.file);
+      what.camera = base_name(what.camera);
+    }
+    if (!device) what.device.clear();
+    return what.key();
+  }
+};
+
+/// Whether scenes or cameras of several folders have one name.
+bool names_clash(const Results& results) {
+  std::map<std::string, std::string> scenes;
+  std::map<std::string, std::string> cameras;
+  const auto clash = [](std::map<std::string, std::string>& path_of, const std::string& path) {
+    return path_of.emplace(base_name(path), path).first->second != path;
+  };
+  return std::any_of(results.entries.begin(), results.entries.end(), [&](const Entry& e) {
+    return clash(scenes, e.what.file) || clash(cameras, e.what.camera);
+  });
 }
 
 std::string case_name(const BenchCase& what) {
@@ -224,10 +240,11 @@ Result<BenchComparison> compare_bench(const ordered_json& a, const ordered_json&
     const Results before = results_of(a);
     const Results after = results_of(b);
     const bool by_device = before.devices > 1 || after.devices > 1;
+    const Likeness like{by_device, names_clash(before) || names_clash(after)};
     std::map<std::string, const Entry*> others;
-    for (const Entry& e : after.entries) others.emplace(key_of(e.what, by_device), &e);
+    for (const Entry& e : after.entries) others.emplace(like.key(e.what), &e);
     for (const Entry& e : before.entries) {
-      const auto found = others.find(key_of(e.what, by_device));
+      const auto found = others.find(like.key(e.what));
       const bool good = !e.json->contains("error");
       if (!good) out.failed_a.push_back(failure(e));
       if (found == others.end()) {
@@ -242,7 +259,7 @@ Result<BenchComparison> compare_bench(const ordered_json& a, const ordered_json&
       others.erase(found);
     }
     for (const Entry& e : after.entries) {
-      const auto left = others.find(key_of(e.what, by_device));
+      const auto left = others.find(like.key(e.what));
       if (left == others.end() || left->second != &e) continue;
       const bool good = !e.json->contains("error");
       (good ? out.only_b : out.failed_b).push_back(good ? case_name(e.what) : failure(e));

@@ -39,10 +39,6 @@ Cell cell(const ordered_json& value) {
   return {};
 }
 
-std::string base_name(const std::string& path) {
-  return std::filesystem::path(path).filename().string();
-}
-
 /// A case and the file that it is from.
 struct Row {
   const ordered_json* json;
@@ -352,53 +348,6 @@ Document bench_document(std::span<const ordered_json> results) {
   for (const ordered_json& word : at(first, "arguments"))
     words.push_back(word.is_string() ? word.get<std::string>() : "");
   add("arguments", join(words, " "));
-  return out;
-}
-
-DocumentSection comparison_section(const BenchComparison& c, const std::string& id) {
-  using enum Better;
-  DocumentSection out{id, "Comparison", {}, {}};
-  out.paragraphs.push_back(counted(c.count(Change::faster), "case") + " of " +
-                           std::to_string(c.cases.size()) + " faster in B, " +
-                           std::to_string(c.count(Change::slower)) + " slower.");
-  out.paragraphs.push_back("A: " + c.a + "; B: " + c.b + ".");
-  for (const auto* list : {&c.warnings, &c.failed_a, &c.failed_b})
-    out.paragraphs.insert(out.paragraphs.end(), list->begin(), list->end());
-  for (const std::string& name : c.only_a) out.paragraphs.push_back("Only in A: " + name);
-  for (const std::string& name : c.only_b) out.paragraphs.push_back("Only in B: " + name);
-  DocumentTable times;
-  times.id = id + "-times";
-  times.title = "Frame times";
-  times.columns = {{"file", "scene", ""},
-                   {"camera", "camera", ""},
-                   {"framesInFlight", "in flight", ""},
-                   {"strategy", "way of drawing", ""},
-                   {"aMs", "A", "ms"},
-                   {"bMs", "B", "ms", Origin::ours, lower},
-                   {"percent", "B - A", "%"},
-                   {"lowPercent", "95 % from", "%"},
-                   {"highPercent", "to", "%"},
-                   {"change", "frame time", ""}};
-  times.note = "Means; the interval of their difference over the runs is Welch's.";
-  DocumentTable counters;
-  counters.id = id + "-counters";
-  counters.title = "Counters that differ";
-  counters.columns = {
-      {"file", "scene", ""},      {"camera", "camera", ""}, {"strategy", "way of drawing", ""},
-      {"counter", "counter", ""}, {"a", "A", ""},           {"b", "B", ""}};
-  for (const CaseChange& k : c.cases) {
-    const double percent = 100 / k.mean_a_ms;
-    const auto bound = [&](double ms) { return k.difference_ms ? Cell(ms * percent) : Cell(); };
-    const std::string file = base_name(k.what.file);
-    times.rows.push_back({file, k.what.camera, static_cast<double>(k.what.frames_in_flight), k.what.way.label,
-                          k.mean_a_ms, k.mean_b_ms, (k.mean_b_ms - k.mean_a_ms) * percent,
-                          bound(k.difference_ms.value_or(Interval{}).low),
-                          bound(k.difference_ms.value_or(Interval{}).high), std::string(name_of(k.change))});
-    for (const CounterChange& n : k.counters)
-      counters.rows.push_back({file, k.what.camera, k.what.way.label, n.name, n.a, n.b});
-  }
-  out.blocks.emplace_back(std::move(times));
-  if (!counters.rows.empty()) out.blocks.emplace_back(std::move(counters));
   return out;
 }
 

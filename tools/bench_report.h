@@ -20,7 +20,4 @@ namespace scenegen::tools {
 /// That section with the facts of the first of the results; not of nothing.
 [[nodiscard]] Document bench_document(std::span<const nlohmann::ordered_json> results);
 
-[[nodiscard]] DocumentSection comparison_section(const BenchComparison& comparison,
-                                                 const std::string& id = "comparison");
-
 }  // namespace scenegen::tools

@@ -49,10 +49,10 @@ void DrawRecorder::set_winding(std::uint32_t slot, const DrawState& state) {
   ++recorded_.state_changes;
 }
 
-void DrawRecorder::draw_run(std::uint32_t first, std::uint32_t count) {
-  const DrawPrimitive& primitive = scene_.primitive(first);
-  if (primitive.batch != batch_ || listed_) bind_batch(primitive.batch);
-  set_winding(first, scene_.batches()[primitive.batch].state);
+void DrawRecorder::draw_instances(std::uint32_t slot, bool listed, std::uint32_t first, std::uint32_t count) {
+  const DrawPrimitive& primitive = scene_.primitive(slot);
+  if (primitive.batch != batch_ || listed_ != listed) bind_batch(primitive.batch, listed);
+  set_winding(slot, scene_.batches()[primitive.batch].state);
   const GeometryRange& range = gpu_.range(primitive.geometry);
   if (range.index_count == 0) return;
   commands_.drawIndexed(range.index_count, count, range.first_index, range.vertex_offset, first);
@@ -78,18 +78,6 @@ void DrawRecorder::draw_indirect(const IndirectDraws& draws) {
 
 void DrawRecorder::read_slots_from(vk::Buffer list) {
   commands_.bindVertexBuffers(2, list, {0});
-}
-
-void DrawRecorder::draw_listed(std::uint32_t slot, std::uint32_t first, std::uint32_t count) {
-  const DrawPrimitive& primitive = scene_.primitive(slot);
-  if (primitive.batch != batch_ || !listed_) bind_batch(primitive.batch, true);
-  set_winding(slot, scene_.batches()[primitive.batch].state);
-  const GeometryRange& range = gpu_.range(primitive.geometry);
-  if (range.index_count == 0) return;
-  commands_.drawIndexed(range.index_count, count, range.first_index, range.vertex_offset, first);
-  ++recorded_.draws;
-  if (range.kind == PrimitiveKind::triangles)
-    recorded_.triangles += std::uint64_t{range.index_count / 3} * count;
 }
 
 void record_all_solid(DrawRecorder& recorder, const DrawScene& scene) {

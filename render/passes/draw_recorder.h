@@ -40,7 +40,7 @@ class DrawRecorder {
 
   void draw(std::uint32_t slot) { draw_run(slot, 1); }
   /// Slots [first, first + count) at once; they must share a primitive and whether they are mirrored.
-  void draw_run(std::uint32_t first, std::uint32_t count);
+  void draw_run(std::uint32_t first, std::uint32_t count) { draw_instances(first, false, first, count); }
 
   void draw_indirect(const IndirectDraws& draws);
 
@@ -48,11 +48,14 @@ class DrawRecorder {
   void read_slots_from(vk::Buffer list);
   /// Slots [first, first + count) of that list at once; `slot`, one of them, stands for them: all share
   /// state, geometry and whether they are mirrored.
-  void draw_listed(std::uint32_t slot, std::uint32_t first, std::uint32_t count);
+  void draw_listed(std::uint32_t slot, std::uint32_t first, std::uint32_t count) {
+    draw_instances(slot, true, first, count);
+  }
 
   [[nodiscard]] const Recorded& recorded() const { return recorded_; }
 
  private:
+  void draw_instances(std::uint32_t slot, bool listed, std::uint32_t first, std::uint32_t count);
   void bind_batch(std::uint32_t batch, bool listed = false);
   void set_winding(std::uint32_t slot, const DrawState& state);
 

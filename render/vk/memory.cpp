@@ -104,7 +104,18 @@ Allocation Memory::allocate(const vk::MemoryRequirements& needs, MemoryUse use, 
   const std::uint32_t type = memory_type(device_.memory_properties, needs.memoryTypeBits, use);
   if (use != MemoryUse::scene) {
     if (use == MemoryUse::device || use == MemoryUse::written) take_from_device(needs.size);
-    return allocate_from(type, needs, image);
+    // What of the device's memory the processor may write can be a small part of it (256 MiB without
+    // resizable BAR); whoever asked for it copies where the rest is given.
+    const std::uint32_t other =
+        use == MemoryUse::written
+            ? memory_type(device_.memory_properties, needs.memoryTypeBits, MemoryUse::device)
+            : type;
+    if (other == type) return allocate_from(type, needs, image);
+    try {
+      return allocate_from(type, needs, image);
+    } catch (const vk::OutOfDeviceMemoryError&) {
+      return allocate_from(other, needs, image);
+    }
   }
   try {
     take_from_device(needs.size);

@@ -65,6 +65,9 @@ TEST_CASE("broken and oversized images are refused before they cost anything") {
   std::string png = encode_picture(PictureFormat::png, size, gradient(size));
   CHECK_FALSE(decode_image(bytes_of(png.substr(0, 50)), "x"));
   png[18] = 0x01;  // width 65549
+  const std::string three = encode_picture(PictureFormat::png, {3, 1}, std::vector<std::uint8_t>(12, 255));
+  CHECK(decode_image(bytes_of(three), "x", 3));
+  CHECK_FALSE(decode_image(bytes_of(three), "x", 2));
   const auto huge = decode_image(bytes_of(png), "x");
   REQUIRE_FALSE(huge);
   CHECK(huge.error().where == "x");

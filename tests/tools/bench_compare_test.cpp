@@ -94,6 +94,22 @@ TEST_CASE("cases are found again, and what exceeds noise is told from what does 
   CHECK(found->warnings.empty());
 }
 
+TEST_CASE("scenes of one name in several folders are told apart") {
+  ordered_json both = results({a_case("way", {10, 10.1, 9.9}, 5), a_case("way", {20, 20.1, 19.9}, 7)});
+  both["cases"][1]["file"] = "town.glb";
+  ordered_json turned = both;
+  std::swap(turned["cases"][0], turned["cases"][1]);
+  const auto found = compare_bench(both, turned, 0.01);
+  REQUIRE(found);
+  CHECK(found->only_a.empty());
+  CHECK(found->only_b.empty());
+  REQUIRE(found->cases.size() == 2);
+  for (const CaseChange& c : found->cases) {
+    CHECK(c.mean_a_ms == c.mean_b_ms);
+    CHECK(c.counters.empty());
+  }
+}
+
 TEST_CASE("other machines, drivers and settings are said; another card is compared all the same") {
   ordered_json b = after();
   b["machine"]["cores"] = 16;
@@ -176,5 +192,13 @@ TEST_CASE("bench compare: forms, exit codes, and files that are refused") {
   strange["cases"][1]["frameMs"] = "fast";
   refused(file("strange.json", strange), 1, "strange.json");
   refused(folder.file("none.json"), 3, "none.json");
+  ordered_json empty = after();
+  empty["cases"] = ordered_json::array();
+  const auto vacuous = compare(a + " " + file("empty.json", empty) + " --fail-on counters");
+  CHECK(vacuous.code == 1);
+  CHECK_THAT(vacuous.err, Catch::Matchers::Contains("no case in common"));
+  test::write_file(folder.file("deep.json"),
+                   R"({"version":)" + std::string(200'000, '[') + std::string(200'000, ']') + "}");
+  refused(folder.file("deep.json"), 1, "is no result");
   refused("--fail-on slow " + b, 2, "did you mean 'slower'");
 }

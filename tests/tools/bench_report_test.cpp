@@ -106,25 +106,3 @@ TEST_CASE("results that are damaged give empty cells and no crash") {
     check_whole(bench_section(json));
   }
 }
-
-TEST_CASE("a comparison is a section") {
-  ordered_json later = ours();
-  later["cases"][0]["counters"]["draws"] = 90;
-  for (const char* i : {"0", "1"}) {
-    later["cases"][std::stoi(i)]["frameMs"]["runs"] = {3, 3.1};
-    later["cases"][std::stoi(i)]["frameMs"]["mean"] = 3.05;
-  }
-  ordered_json before = ours();
-  before["cases"][0]["frameMs"]["runs"] = {8, 8.1};
-  before["cases"][1]["frameMs"]["runs"] = {4};
-  const auto found = compare_bench(before, later, 0.01);
-  REQUIRE(found);
-  const DocumentSection section = comparison_section(*found);
-  check_whole(section);
-  CHECK(section.paragraphs[0] == "1 case of 2 faster in B, 0 slower.");
-  const DocumentTable& times = table(section, "comparison-times");
-  CHECK(std::get<std::string>(value(times, 0, "change")) == "faster");
-  CHECK(std::get<double>(value(times, 0, "highPercent")) < 0);
-  CHECK(std::holds_alternative<std::monostate>(value(times, 1, "highPercent")));
-  CHECK(std::get<double>(value(table(section, "comparison-counters"), 0, "b")) == 90);
-}

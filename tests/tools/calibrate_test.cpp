@@ -27,16 +27,6 @@ ProcessResult play(const std::string& line, const std::string& cache) {
   return result;
 }
 
-void check_error(const ProcessResult& result, int code, const std::string& part) {
-  INFO(result.err);
-  CHECK(result.signal == 0);
-  CHECK(result.code == code);
-  CHECK(result.out.empty());
-  CHECK(result.err.starts_with("error: "));
-  CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
-  CHECK_THAT(result.err, Catch::Matchers::Contains(part));
-}
-
 std::string wall_file(const TemporaryFolder& folder) {
   const std::string path = folder.file("wall.glb");
   REQUIRE(gltf::write(render::test::wall_scene(), path, {}));

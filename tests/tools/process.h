@@ -30,6 +30,9 @@ struct ProcessResult {
 [[nodiscard]] ProcessResult run(const std::string& program, const std::vector<std::string>& arguments,
                                 const ProcessOptions& options = {});
 
+/// That it ended with `code` and one line on stderr, an error that has `part` in it, and nothing else.
+void check_error(const ProcessResult& result, int code, const std::string& part);
+
 /// "--grid 4x4" -> {"--grid", "4x4"}.
 [[nodiscard]] std::vector<std::string> words(const std::string& line);
 

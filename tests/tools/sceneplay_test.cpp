@@ -28,16 +28,6 @@ std::string wall_file(const TemporaryFolder& folder) {
   return path;
 }
 
-void check_error(const ProcessResult& result, int code, const std::string& part) {
-  INFO(result.err);
-  CHECK(result.signal == 0);
-  CHECK(result.code == code);
-  CHECK(result.out.empty());
-  CHECK(result.err.starts_with("error: "));
-  CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
-  CHECK_THAT(result.err, Catch::Matchers::Contains(part));
-}
-
 }  // namespace
 
 TEST_CASE("times: seconds, percentages, ranges") {

@@ -85,10 +85,14 @@ void DeviceCulling::record(const render::PassContext& context) {
   commands.dispatch((count_ + 63) / 64, 1, 1);
   context.barriers.buffer(*commands_.buffer, Use::compute_write, Use::indirect).flush(commands);
   render::PassRecording pass(context, stage_.target());
-  render::IndirectDraws draws;
-  draws.commands = *commands_.buffer;
-  draws.count = count_;
-  pass.draws().draw_indirect(draws);
+  const std::uint32_t longest = stage_.device().properties.limits.maxDrawIndirectCount;
+  for (std::uint32_t first = 0; first < count_; first += std::min(longest, count_ - first)) {
+    render::IndirectDraws draws;
+    draws.commands = *commands_.buffer;
+    draws.offset = std::uint64_t{first} * sizeof(VkDrawIndexedIndirectCommand);
+    draws.count = std::min(longest, count_ - first);
+    pass.draws().draw_indirect(draws);
+  }
   pass.end();
 }
 

@@ -22,6 +22,7 @@ constexpr std::size_t kMostFacts = 1'000;
 constexpr std::size_t kMostSections = 1'000;
 constexpr std::size_t kMostParagraphs = 1'000;
 constexpr std::size_t kMostBlocks = 1'000;
+constexpr std::size_t kMostPictures = 100;  // each up to some 0.5 MB of the page
 constexpr std::size_t kMostColumns = 256;
 constexpr std::size_t kMostRows = 100'000;
 constexpr std::size_t kMostSeries = 64;
@@ -350,6 +351,10 @@ Block read_block(const Reader& in, Ids& ids) {
   std::string id;
   in.id(id, ids.blocks[kind]);
   if (in.failed()) return {};
+  if (kKinds[kind] == "picture" && ids.blocks[kind].size() > kMostPictures) {
+    in.bad("is one picture more than the " + std::to_string(kMostPictures) + " of a document");
+    return {};
+  }
   const auto named = [&id](auto block) {
     block.id = id;
     return Block(std::move(block));

@@ -64,38 +64,15 @@ Result<std::string> read_picture(const std::string& folder, const std::string& f
   return bytes;
 }
 
-/// Before it is decoded. PNG says it in its first chunk; JPEG in a frame header behind any number of others.
-std::uint64_t pixels_of(std::string_view bytes) {
-  const auto at = [&](std::size_t i) -> std::uint64_t {
-    return i < bytes.size() ? static_cast<unsigned char>(bytes[i]) : 0;
-  };
-  if (type_of(bytes) == "image/png") {
-    const auto side = [&](std::size_t i) {
-      return at(i) << 24U | at(i + 1) << 16U | at(i + 2) << 8U | at(i + 3);
-    };
-    return side(16) * side(20);
-  }
-  for (std::size_t i = 2; i + 9 < bytes.size() && at(i) == 0xFF;) {
-    const std::uint64_t marker = at(i + 1);
-    const bool frame = marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
-    if (frame) return (at(i + 5) << 8U | at(i + 6)) * (at(i + 7) << 8U | at(i + 8));
-    i += 2 + std::max<std::uint64_t>(2, at(i + 2) << 8U | at(i + 3));
-  }
-  return 0;
-}
-
 }  // namespace
 
 Result<EmbeddedPicture> embed_picture(const std::string& folder, const std::string& file) {
   Result<std::string> bytes = read_picture(folder, file);
   if (!bytes) return forward_error(bytes);
   const std::string where = (fs::path(folder) / file).string();
-  if (const std::uint64_t pixels = pixels_of(*bytes); pixels == 0 || pixels > kMostPixels)
-    return fail(ErrorKind::bad_input, where,
-                pixels == 0 ? "says nothing of its size" : "has more than 64 million pixels");
   // Decoded in any case: what is damaged is said now, not shown as a broken frame.
   Result<render::DecodedImage> image = render::decode_image(
-      std::span(reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()), where);
+      std::span(reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()), where, kMostPixels);
   if (!image) return forward_error(image);
   EmbeddedPicture out;
   std::string_view type = type_of(*bytes);
