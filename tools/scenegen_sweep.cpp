@@ -183,7 +183,7 @@ int sweep_verb(std::span<const std::string> arguments) {
       "go through, the last array fastest (docs/SWEEP.md); - is stdin");
   options.group("Output");
   options.add("-o,--output", text_value(r.folder, "DIR"),
-              "folder for the scenes and index.json; made when it is not there", Role::run, "none");
+              "folder for the scenes and index.json; made when it is not there");
   options.flag("--resume", r.resume,
                "keep scenes of an earlier run whose files are still what its index says");
   options.flag("--dry-run", r.dry_run,

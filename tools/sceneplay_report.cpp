@@ -142,8 +142,7 @@ int report_verb(std::span<const std::string> arguments) {
                      "report, named after its device");
   options.group("Report");
   options.add("-o,--output", text_value(r.output, "FILE"),
-              "the file to write (- is stdout); with --format csv a folder: a file a table and chart",
-              Role::run, "none");
+              "the file to write (- is stdout); with --format csv a folder: a file a table and chart");
   options.add("--format",
               choice_value<ReportFormat>(r.format,
                                          {{"html", ReportFormat::html},
