@@ -102,6 +102,7 @@ class DrawScene {
   [[nodiscard]] const SlotBoxes& boxes() const { return boxes_; }
   /// Its transform turns the object inside out: front faces wind the other way.
   [[nodiscard]] bool mirrored(std::uint32_t slot) const { return mirrored_.test(slot); }
+  [[nodiscard]] const BitSet& mirrored_slots() const { return mirrored_; }
   /// Box round everything where it is now, hidden or not: what shadows must reach. Like all state here it
   /// depends on the time alone, not on the frames drawn before, so that a picture does not either.
   [[nodiscard]] const Box& bounds_m() const { return bounds_m_; }

@@ -403,8 +403,9 @@ void GpuScene::bind_geometry(const vk::raii::CommandBuffer& commands) const {
   commands.bindIndexBuffer(*indices_.buffer, 0, vk::IndexType::eUint32);
 }
 
-void GpuScene::bind_frame_set(const vk::raii::CommandBuffer& commands, vk::PipelineLayout layout) const {
-  commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, layout, 0, frame_set_, {});
+void GpuScene::bind_frame_set(const vk::raii::CommandBuffer& commands, vk::PipelineLayout layout,
+                              vk::PipelineBindPoint where) const {
+  commands.bindDescriptorSets(where, layout, 0, frame_set_, {});
 }
 
 void GpuScene::bind_texture_set(const vk::raii::CommandBuffer& commands, vk::PipelineLayout layout,

@@ -52,7 +52,8 @@ class GpuScene {
   void bind_shadow_map(const vkr::Image& map);
 
   void bind_geometry(const vk::raii::CommandBuffer& commands) const;
-  void bind_frame_set(const vk::raii::CommandBuffer& commands, vk::PipelineLayout layout) const;
+  void bind_frame_set(const vk::raii::CommandBuffer& commands, vk::PipelineLayout layout,
+                      vk::PipelineBindPoint where = vk::PipelineBindPoint::eGraphics) const;
   void bind_texture_set(const vk::raii::CommandBuffer& commands, vk::PipelineLayout layout,
                         std::uint32_t set) const;
   /// Bit i: the set has texture i.

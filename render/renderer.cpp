@@ -323,6 +323,11 @@ void Renderer::State::finish(FrameResult& out) {
   copy(out.ids, frame->ids, options.outputs.ids);
   copy(out.depth, frame->depth, options.outputs.depth);
   report.readback_ms = ms_since(start);
+  const DeviceCounts counted = strategy->device_counts(frame->serial);
+  report.drawn += counted.drawn;
+  report.reveals += counted.reveals;
+  report.triangles += counted.triangles;
+  report.ids_triangles += counted.ids_triangles;
   out.report = report;
   strategy->finished(
       {frame->serial,

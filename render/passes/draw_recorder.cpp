@@ -33,7 +33,7 @@ void DrawRecorder::bind_batch(std::uint32_t batch, bool listed) {
   ++recorded_.state_changes;
 }
 
-void DrawRecorder::set_winding(std::uint32_t slot, const DrawState& state) {
+void DrawRecorder::set_winding(bool mirrored, const DrawState& state) {
   using Cull = vk::CullModeFlagBits;
   // Both sides cast shadows: thin walls and open meshes leak no light.
   const bool both = state.double_sided || pass_ == vkr::PassKind::shadow;
@@ -42,8 +42,7 @@ void DrawRecorder::set_winding(std::uint32_t slot, const DrawState& state) {
     commands_.setCullMode(cull_ = cull);
     ++recorded_.state_changes;
   }
-  const vk::FrontFace front =
-      scene_.mirrored(slot) ? vk::FrontFace::eClockwise : vk::FrontFace::eCounterClockwise;
+  const vk::FrontFace front = mirrored ? vk::FrontFace::eClockwise : vk::FrontFace::eCounterClockwise;
   if (front == front_) return;
   commands_.setFrontFace(front_ = front);
   ++recorded_.state_changes;
@@ -52,7 +51,7 @@ void DrawRecorder::set_winding(std::uint32_t slot, const DrawState& state) {
 void DrawRecorder::draw_instances(std::uint32_t slot, bool listed, std::uint32_t first, std::uint32_t count) {
   const DrawPrimitive& primitive = scene_.primitive(slot);
   if (primitive.batch != batch_ || listed_ != listed) bind_batch(primitive.batch, listed);
-  set_winding(slot, scene_.batches()[primitive.batch].state);
+  set_winding(scene_.mirrored(slot), scene_.batches()[primitive.batch].state);
   const GeometryRange& range = gpu_.range(primitive.geometry);
   if (range.index_count == 0) return;
   commands_.drawIndexed(range.index_count, count, range.first_index, range.vertex_offset, first);
@@ -65,7 +64,7 @@ void DrawRecorder::draw_indirect(const IndirectDraws& draws) {
   constexpr auto kStride = static_cast<std::uint32_t>(sizeof(VkDrawIndexedIndirectCommand));
   const DrawPrimitive& primitive = scene_.primitive(draws.slot);
   if (primitive.batch != batch_ || listed_) bind_batch(primitive.batch);
-  set_winding(draws.slot, scene_.batches()[primitive.batch].state);
+  set_winding(scene_.mirrored(draws.slot), scene_.batches()[primitive.batch].state);
   if (draws.counts) {
     commands_.drawIndexedIndirectCount(draws.commands, draws.offset, draws.counts, draws.counts_offset,
                                        draws.count, kStride);
@@ -74,6 +73,14 @@ void DrawRecorder::draw_indirect(const IndirectDraws& draws) {
   }
   recorded_.draws += draws.count;
   recorded_.triangles += draws.triangles;
+}
+
+void DrawRecorder::draw_listed_indirect(const ListedIndirectDraws& draws) {
+  if (draws.batch != batch_ || !listed_) bind_batch(draws.batch, true);
+  set_winding(draws.mirrored, scene_.batches()[draws.batch].state);
+  commands_.drawIndexedIndirect(draws.commands, draws.offset, draws.count,
+                                static_cast<std::uint32_t>(sizeof(VkDrawIndexedIndirectCommand)));
+  recorded_.draws += draws.count;
 }
 
 void DrawRecorder::read_slots_from(vk::Buffer list) {

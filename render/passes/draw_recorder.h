@@ -33,6 +33,15 @@ struct IndirectDraws {
   std::uint64_t counts_offset = 0;
 };
 
+/// The same, of slots that stand in the list of read_slots_from(). What is drawn only the device knows.
+struct ListedIndirectDraws {
+  std::uint32_t batch = 0;
+  bool mirrored = false;
+  vk::Buffer commands;
+  std::uint64_t offset = 0;
+  std::uint32_t count = 0;
+};
+
 class DrawRecorder {
  public:
   DrawRecorder(const vk::raii::CommandBuffer& commands, vkr::Pipelines& pipelines, const GpuScene& gpu,
@@ -44,7 +53,9 @@ class DrawRecorder {
 
   void draw_indirect(const IndirectDraws& draws);
 
-  /// Where draw_listed() finds slots: 32-bit numbers.
+  void draw_listed_indirect(const ListedIndirectDraws& draws);
+
+  /// Where draw_listed() and draw_listed_indirect() find slots: 32-bit numbers.
   void read_slots_from(vk::Buffer list);
   /// Slots [first, first + count) of that list at once; `slot`, one of them, stands for them: all share
   /// state, geometry and whether they are mirrored.
@@ -57,7 +68,7 @@ class DrawRecorder {
  private:
   void draw_instances(std::uint32_t slot, bool listed, std::uint32_t first, std::uint32_t count);
   void bind_batch(std::uint32_t batch, bool listed = false);
-  void set_winding(std::uint32_t slot, const DrawState& state);
+  void set_winding(bool mirrored, const DrawState& state);
 
   const vk::raii::CommandBuffer& commands_;
   vkr::Pipelines& pipelines_;

@@ -55,6 +55,7 @@ class PassRecording {
 
   [[nodiscard]] const PassContext& context() const { return context_; }
   [[nodiscard]] const Target& target() const { return target_; }
+  [[nodiscard]] Target& target() { return target_; }
   [[nodiscard]] Recorded solid() const {
     Recorded all = solid_;
     if (recorder_) all.add(recorder_->recorded());

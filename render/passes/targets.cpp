@@ -14,7 +14,7 @@ Target make_target(const vkr::Device& device, vkr::Memory& memory, const vkr::Pi
   t.pass = pass;
   t.extent = extent;
   vk::ImageUsageFlags depth_usage = Usage::eDepthStencilAttachment;
-  if (pass == vkr::PassKind::shadow) depth_usage |= Usage::eSampled;
+  if (pass == vkr::PassKind::shadow || vkr::can_sample_depth(device, samples)) depth_usage |= Usage::eSampled;
   if (pass == vkr::PassKind::ids) depth_usage |= Usage::eTransferSrc;
   t.depth = memory.image({vkr::kDepthFormat, extent, 1, samples, depth_usage});
   std::vector<vk::ImageView> views{*t.depth.view};

@@ -10,6 +10,7 @@ std::unique_ptr<Strategy> make_brute(const StrategyContext& context);
 std::unique_ptr<Strategy> make_inline(const StrategyContext& context);
 std::unique_ptr<Strategy> make_inline_queries(const StrategyContext& context);
 std::unique_ptr<Strategy> make_instanced(const StrategyContext& context);
+std::unique_ptr<Strategy> make_hi_z(const StrategyContext& context);
 std::unique_ptr<Strategy> make_octree_record(const StrategyContext& context);
 std::unique_ptr<Strategy> make_octree(const StrategyContext& context);
 std::unique_ptr<Strategy> make_queries(const StrategyContext& context);
@@ -28,6 +29,7 @@ std::span<const StrategyEntry> strategies() {
       StrategyEntry{"octree", "octree culling, commands of each node kept", &make_octree},
       StrategyEntry{"queries-all", "the same, with an occlusion query for every node", &make_queries_all},
       StrategyEntry{"queries", "the same, with as many occlusion queries as pay", &make_queries},
+      StrategyEntry{"hi-z", "frustum and occlusion culling of every object on the device", &make_hi_z},
       StrategyEntry{"adaptive",
                     "the cheapest of inline, octree and queries by a model of what they cost, each frame",
                     &make_adaptive},

@@ -47,6 +47,14 @@ struct FrameTimes {
   double gpu_s = -1;
 };
 
+/// Counts of a frame that the device made; added to its report.
+struct DeviceCounts {
+  std::uint64_t drawn = 0;    ///< slots of the colour pass
+  std::uint64_t reveals = 0;  ///< slots drawn in second parts, of all passes
+  std::uint64_t triangles = 0;
+  std::uint64_t ids_triangles = 0;
+};
+
 /// What a strategy that chooses among others took.
 struct ChoiceReport {
   std::string_view used;  ///< name of a strategy
@@ -73,6 +81,8 @@ class Strategy {
   virtual void resized(glm::uvec2 /*size*/) {}
   /// An earlier frame was finished: for strategies that learn.
   virtual void finished(const FrameTimes& /*measured*/) {}
+  /// What only the device knew of a frame, once that is done.
+  [[nodiscard]] virtual DeviceCounts device_counts(std::uint64_t /*serial*/) const { return {}; }
   /// For the model's prediction of the frame that was just drawn; what this way of drawing did not find out
   /// stays 0 and `exact_*` false. Not part of drawing: called only when someone wants predictions.
   [[nodiscard]] virtual model::FrameFacts facts() const { return {}; }

@@ -7,8 +7,8 @@ using Stage = vk::PipelineStageFlagBits2;
 using Access = vk::AccessFlagBits2;
 
 bool writes(Use use) {
-  return use == Use::transfer_write || use == Use::compute_write || use == Use::color_attachment ||
-         use == Use::depth_attachment;
+  return use == Use::transfer_write || use == Use::compute_write || use == Use::compute_update ||
+         use == Use::color_attachment || use == Use::depth_attachment;
 }
 
 }  // namespace
@@ -22,7 +22,7 @@ UseScope scope_of(Use use) {
     case Use::transfer_write:
       return {Stage::eAllTransfer, Access::eTransferWrite, vk::ImageLayout::eTransferDstOptimal};
     case Use::shader_data:
-      return {Stage::eVertexInput | Stage::eVertexShader | Stage::eFragmentShader,
+      return {Stage::eVertexInput | Stage::eVertexShader | Stage::eFragmentShader | Stage::eComputeShader,
               Access::eIndexRead | Access::eVertexAttributeRead | Access::eUniformRead |
                   Access::eShaderStorageRead,
               vk::ImageLayout::eUndefined};
@@ -39,6 +39,12 @@ UseScope scope_of(Use use) {
       return {Stage::eComputeShader, Access::eShaderStorageRead, vk::ImageLayout::eUndefined};
     case Use::compute_write:
       return {Stage::eComputeShader, Access::eShaderStorageWrite, vk::ImageLayout::eUndefined};
+    case Use::compute_update:
+      return {Stage::eComputeShader, Access::eShaderStorageRead | Access::eShaderStorageWrite,
+              vk::ImageLayout::eUndefined};
+    case Use::compute_sampled:
+      return {Stage::eComputeShader, Access::eShaderSampledRead,
+              vk::ImageLayout::eDepthStencilReadOnlyOptimal};
     case Use::predicate:
       return {Stage::eConditionalRenderingEXT, Access::eConditionalRenderingReadEXT,
               vk::ImageLayout::eUndefined};

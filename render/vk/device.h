@@ -40,6 +40,11 @@ struct Device {
   [[nodiscard]] std::vector<std::string> take_messages();
 };
 
+/// Can a depth picture of so many samples be read in shaders?
+[[nodiscard]] inline bool can_sample_depth(const Device& device, vk::SampleCountFlagBits samples) {
+  return static_cast<bool>(device.properties.limits.sampledImageDepthSampleCounts & samples);
+}
+
 /// Errors are of kind no_device (or usage, for a --device that names none).
 [[nodiscard]] Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options);
 

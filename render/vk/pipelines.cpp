@@ -162,8 +162,9 @@ Pipelines::Pipelines(const Device& device, vk::SampleCountFlagBits color_samples
   using Stage = vk::ShaderStageFlagBits;
   using Type = vk::DescriptorType;
   const std::array frame_bindings{
-      vk::DescriptorSetLayoutBinding(0, Type::eUniformBuffer, 1, Stage::eVertex | Stage::eFragment),
-      vk::DescriptorSetLayoutBinding(1, Type::eStorageBuffer, 1, Stage::eVertex),
+      vk::DescriptorSetLayoutBinding(0, Type::eUniformBuffer, 1,
+                                     Stage::eVertex | Stage::eFragment | Stage::eCompute),
+      vk::DescriptorSetLayoutBinding(1, Type::eStorageBuffer, 1, Stage::eVertex | Stage::eCompute),
       vk::DescriptorSetLayoutBinding(2, Type::eStorageBuffer, 1, Stage::eVertex | Stage::eFragment),
       vk::DescriptorSetLayoutBinding(3, Type::eCombinedImageSampler, 1, Stage::eFragment)};
   const vk::DescriptorSetLayoutBinding texture_binding(0, Type::eCombinedImageSampler, kTextureCount,

@@ -1,0 +1,143 @@
+// Culling on the device: what was seen in the frame before is drawn first, then what else is not hidden behind
+// the depth that this leaves (Greene, Kass and Miller 1993; in two parts as Haar and Aaltonen 2015). The processor touches
+// nothing but what changed.
+#include <memory>
+#include <new>
+
+#include "render/passes/hi_z.h"
+#include "render/passes/pass_recording.h"
+#include "render/strategy/list_strategy.h"
+
+namespace scenegen::render {
+namespace {
+
+class HiZStrategy final : public ListStrategy {
+ public:
+  explicit HiZStrategy(const StrategyContext& context)
+      : ListStrategy(context), frames_in_flight_(context.frames_in_flight) {
+    if (!context.device.indirect_nodes) {
+      go_on_as_inline("the device has no indirect draws with a first instance");
+    } else if (!vkr::can_sample_depth(context.device, vk::SampleCountFlagBits::e4)) {
+      go_on_as_inline("the device cannot read depths of several samples in shaders");
+    }
+  }
+
+  void update(const timeline::ChangeSet& changes) override {
+    ListStrategy::update(changes);
+    if (!changes.shown.empty() || !changes.hidden.empty() || !changes.remeshed.empty()) ++revision_;
+    if (changes.moved.empty() || !layout_) return;
+    for (const ObjectId id : changes.moved) {
+      for (const std::uint32_t slot : scene_.slots_of(id))
+        turned_over_ = turned_over_ || (scene_.mirrored(slot) && !layout_->draws_mirrored(slot));
+    }
+    if (layout_->mirrored || turned_over_) ++revision_;
+  }
+
+  void plan(const View& view) override {
+    view_ = view;
+    const CullPlanes planes = cull_planes(frustum_of(view.clip_from_world), scene_.bounds_m());
+    inline_ ? list_in_frustum(scene_, planes, list_) : list_blended_in_frustum(scene_, planes, list_);
+    finish_plan(view);
+  }
+
+  void draw_solid(PassRecording& pass) override {
+    if (inline_) return ListStrategy::draw_solid(pass);
+    HiZ* culling = nullptr;
+    try {
+      culling = &prepared(pass);
+    } catch (const vk::OutOfDeviceMemoryError& e) {
+      give_up(e);
+    } catch (const vk::OutOfHostMemoryError& e) {
+      give_up(e);
+    } catch (const std::bad_alloc& e) {
+      give_up(e);
+    }
+    if (culling == nullptr) return ListStrategy::draw_solid(pass);
+
+    pass.in_two_parts();
+    culling->cull(pass.context(), pass.target(), 0);
+    culling->draw(pass.draws(), 0);
+    pass.end_first_part();
+    culling->cull(pass.context(), pass.target(), 1);
+    DrawRecorder& second = pass.draws();
+    if (!options_.late_visibility) culling->draw(second, 1);
+  }
+
+  [[nodiscard]] DeviceCounts device_counts(std::uint64_t serial) const override {
+    DeviceCounts out;
+    for (std::size_t kind = 0; kind < culling_.size(); ++kind) {
+      if (!culling_[kind]) continue;
+      const HiZCounts counts = culling_[kind]->counts(serial, frames_in_flight_);
+      const auto& [first, second] = counts.parts;
+      const std::uint64_t exact = options_.late_visibility ? 0 : 1;
+      const std::uint64_t triangles = first.triangles + exact * second.triangles;
+      out.reveals += exact * second.drawn;
+      if (kind == color) out.drawn = first.drawn + exact * second.drawn;
+      (kind == color ? out.triangles : out.ids_triangles) = triangles;
+    }
+    return out;
+  }
+
+  void resized(glm::uvec2 size) override {
+    ListStrategy::resized(size);
+    stale_ = {true, true};
+  }
+
+  void add_memory(MemoryAccount& to) const override {
+    ListStrategy::add_memory(to);
+    if (layout_) to.add_host(MemoryKind::lists, layout_->memory_bytes());
+  }
+
+ private:
+  enum Kind : std::size_t { color, ids };
+
+  HiZ& prepared(PassRecording& pass) {
+    const PassContext& context = pass.context();
+    const Kind kind = pass.target().pass == vkr::PassKind::color ? color : ids;
+    if (!layout_ || turned_over_) {
+      // Frames in flight may still draw by the old one: it is kept. This happens once at most.
+      for (std::unique_ptr<HiZ>& culling : culling_)
+        if (culling) old_.push_back(std::move(culling));
+      if (layout_) old_layout_ = std::move(layout_);
+      layout_ = std::make_unique<HiZLayout>(scene_, context.gpu,
+                                            context.device.properties.limits.maxDrawIndirectCount,
+                                            std::exchange(turned_over_, false));
+    }
+    std::unique_ptr<HiZ>& culling = culling_[kind];
+    if (!culling) {
+      culling = std::make_unique<HiZ>(context, pass.target(), *layout_);
+    } else if (stale_[kind]) {
+      culling->resized(context, pass.target());
+    }
+    stale_[kind] = false;
+    culling->write_slots(context, revision_);
+    return *culling;
+  }
+
+  void go_on_as_inline(const std::string& why) {
+    inline_ = true;
+    warnings_.push_back(why + "; drawn as --strategy inline");
+  }
+
+  void give_up(const std::exception& e) {
+    go_on_as_inline(std::string("no memory for culling on the device (") + e.what() + ")");
+    plan(view_);
+  }
+
+  std::uint32_t frames_in_flight_;
+  bool inline_ = false;
+  std::uint64_t revision_ = 1;  // of the sets of visible and mirrored slots
+  bool turned_over_ = false;    // a slot became mirrored that no command draws
+  std::unique_ptr<HiZLayout> layout_, old_layout_;
+  std::array<std::unique_ptr<HiZ>, 2> culling_;
+  std::vector<std::unique_ptr<HiZ>> old_;
+  std::array<bool, 2> stale_{};
+};
+
+}  // namespace
+
+std::unique_ptr<Strategy> make_hi_z(const StrategyContext& context) {
+  return std::make_unique<HiZStrategy>(context);
+}
+
+}  // namespace scenegen::render
