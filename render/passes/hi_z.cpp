@@ -69,7 +69,9 @@ vkr::Buffer table(vkr::Memory& memory, std::span<const T> values) {
 
 }  // namespace
 
-HiZLayout::HiZLayout(const DrawScene& scene, const GpuScene& gpu, std::uint32_t longest_run, bool all_mirrored) : mirrored(all_mirrored) {
+HiZLayout::HiZLayout(const DrawScene& scene, const GpuScene& gpu, std::uint32_t longest_run,
+                     bool all_mirrored)
+    : mirrored(all_mirrored) {
   // Groups: neighbours of one state and geometry.
   struct Range {
     std::uint32_t first, end;
@@ -79,8 +81,9 @@ HiZLayout::HiZLayout(const DrawScene& scene, const GpuScene& gpu, std::uint32_t 
   const DrawPrimitive* last = nullptr;
   for (std::uint32_t slot = 0; slot < scene.solid_end(); ++slot) {
     const DrawPrimitive& primitive = scene.primitive(slot);
-    const bool same = last != nullptr && (last == &primitive || (last->batch == primitive.batch &&
-                                                                 last->geometry == primitive.geometry));
+    const bool same =
+        last != nullptr &&
+        (last == &primitive || (last->batch == primitive.batch && last->geometry == primitive.geometry));
     if (!same) ranges.push_back({slot, slot, all_mirrored});
     ranges.back().end = slot + 1;
     if (scene.mirrored(slot)) ranges.back().mirrored = mirrored = true;
@@ -94,14 +97,13 @@ HiZLayout::HiZLayout(const DrawScene& scene, const GpuScene& gpu, std::uint32_t 
     if (geometry.index_count == 0) continue;
     const auto group = static_cast<std::uint32_t>(groups.size());
     groups.push_back({glm::vec4(primitive.bounds_m.lo, 0.0F), glm::vec4(primitive.bounds_m.hi, 0.0F)});
-    const std::uint32_t triangles =
-        geometry.kind == PrimitiveKind::triangles ? geometry.index_count / 3 : 0;
+    const std::uint32_t triangles = geometry.kind == PrimitiveKind::triangles ? geometry.index_count / 3 : 0;
     for (std::uint32_t first = range.first; first < range.end; first += block_slots) {
       if (runs.empty() || runs.back().batch != primitive.batch || runs.back().count == longest_run)
         runs.push_back({primitive.batch, false, static_cast<std::uint32_t>(blocks.size()), 0});
       ++runs.back().count;
-      blocks.push_back({first, std::min(block_slots, range.end - first), group,
-                        range.mirrored ? 0 : kHiZNone, geometry.index_count, geometry.first_index,
+      blocks.push_back({first, std::min(block_slots, range.end - first), group, range.mirrored ? 0 : kHiZNone,
+                        geometry.index_count, geometry.first_index,
                         static_cast<std::uint32_t>(geometry.vertex_offset), triangles});
     }
   }
@@ -142,9 +144,9 @@ HiZ::HiZ(const PassContext& context, const Target& target, const HiZLayout& layo
   groups_ = table(context.memory, std::span(layout.groups));
   seen_ = on_device(seen_words * sizeof(std::uint32_t), Usage::eTransferDst);
   list_ = on_device(slots * sizeof(std::uint32_t), Usage::eVertexBuffer);
-  commands_ = on_device(
-      2 * std::max<std::uint64_t>(layout.commands, 1) * sizeof(VkDrawIndexedIndirectCommand),
-      Usage::eIndirectBuffer);
+  commands_ =
+      on_device(2 * std::max<std::uint64_t>(layout.commands, 1) * sizeof(VkDrawIndexedIndirectCommand),
+                Usage::eIndirectBuffer);
   counts_ = on_device(sizeof(HiZCounts), Usage::eTransferDst | Usage::eTransferSrc);
   for (std::uint32_t i = 0; i < context.frames_in_flight; ++i) {
     places_[i].bits =
@@ -173,9 +175,8 @@ void HiZ::make_cull(const PassContext& context) {
   const vk::SpecializationMapEntry entry(3, 0, sizeof(std::uint32_t));
   const vk::SpecializationInfo specialization(1, &entry, sizeof(std::uint32_t), &layout_.block_slots);
   cull_ = compute_pipeline(device, *cull_layout_, kHiZCullComp, &specialization);
-  const std::array sizes{
-      vk::DescriptorPoolSize(Type::eStorageBuffer, 8 * kMostFramesInFlight + 1),
-      vk::DescriptorPoolSize(Type::eCombinedImageSampler, 1)};
+  const std::array sizes{vk::DescriptorPoolSize(Type::eStorageBuffer, 8 * kMostFramesInFlight + 1),
+                         vk::DescriptorPoolSize(Type::eCombinedImageSampler, 1)};
   pool_ = vk::raii::DescriptorPool(device.device,
                                    vk::DescriptorPoolCreateInfo({}, kMostFramesInFlight + 1, sizes));
   for (std::uint32_t i = 0; i < context.frames_in_flight; ++i)
@@ -196,9 +197,8 @@ void HiZ::make_pyramid(const PassContext& context, const Target& target) {
   const vk::PushConstantRange constants(Stage::eCompute, 0, sizeof(PyramidConstants));
   pyramid_layout_ = vk::raii::PipelineLayout(
       device.device, vk::PipelineLayoutCreateInfo({}, *pyramid_set_layout_, constants));
-  first_levels_ = target.resolves()
-                      ? compute_pipeline(device, *pyramid_layout_, kHiZPyramidSamplesComp)
-                      : compute_pipeline(device, *pyramid_layout_, kHiZPyramidDepthComp);
+  first_levels_ = target.resolves() ? compute_pipeline(device, *pyramid_layout_, kHiZPyramidSamplesComp)
+                                    : compute_pipeline(device, *pyramid_layout_, kHiZPyramidDepthComp);
   more_levels_ = compute_pipeline(device, *pyramid_layout_, kHiZPyramidComp);
   pyramid_set_ = (*device.device)
                      .allocateDescriptorSets({*pool_, *pyramid_set_layout_}, *device.device.getDispatcher())
@@ -214,7 +214,8 @@ void HiZ::resized(const PassContext& context, const Target& target) {
   pyramid_ = context.memory.buffer(texels * sizeof(float), Usage::eStorageBuffer, vkr::MemoryUse::device,
                                    MemoryKind::targets);
   using Type = vk::DescriptorType;
-  const vk::DescriptorImageInfo depth(*sampler_, *target.depth.view, vk::ImageLayout::eDepthStencilReadOnlyOptimal);
+  const vk::DescriptorImageInfo depth(*sampler_, *target.depth.view,
+                                      vk::ImageLayout::eDepthStencilReadOnlyOptimal);
   const vk::DescriptorBufferInfo pyramid(*pyramid_.buffer, 0, VK_WHOLE_SIZE);
   context.device.device.updateDescriptorSets(
       {vk::WriteDescriptorSet(pyramid_set_, 0, 0, Type::eStorageBuffer, {}, pyramid),
@@ -315,7 +316,8 @@ void HiZ::cull(const PassContext& context, Target& target, std::uint32_t part) {
 void HiZ::copy_counts(const PassContext& context) {
   Place& p = place(context);
   p.counted = context.frame.serial;
-  context.frame.commands.copyBuffer(*counts_.buffer, *p.counts.buffer, vk::BufferCopy(0, 0, sizeof(HiZCounts)));
+  context.frame.commands.copyBuffer(*counts_.buffer, *p.counts.buffer,
+                                    vk::BufferCopy(0, 0, sizeof(HiZCounts)));
   context.barriers.buffer(*p.counts.buffer, Use::transfer_write, Use::host_read)
       .flush(context.frame.commands);
 }

@@ -13,8 +13,8 @@
 
 namespace scenegen::render {
 
-/// Slots of the scene in blocks that share state and geometry, and the indirect draws that they come to: one a block,
-/// one more for those of its slots that are mirrored. Not changed once it is made.
+/// Slots of the scene in blocks that share state and geometry, and the indirect draws that they come to: one
+/// a block, one more for those of its slots that are mirrored. Not changed once it is made.
 struct HiZLayout {
   /// Commands [first, first + count) that one pipeline state draws.
   struct Run {
@@ -31,8 +31,8 @@ struct HiZLayout {
 
   bool mirrored = false;  ///< some blocks have a command for mirrored slots
 
-  /// Blocks of 256 slots where as many share a geometry, else of 64. Those in which a slot is mirrored now have a
-  /// command for such slots, with `all_mirrored` every one.
+  /// Blocks of 256 slots where as many share a geometry, else of 64. Those in which a slot is mirrored now
+  /// have a command for such slots, with `all_mirrored` every one.
   HiZLayout(const DrawScene& scene, const GpuScene& gpu, std::uint32_t longest_run, bool all_mirrored);
   /// Does the block of this slot have a command for mirrored ones?
   [[nodiscard]] bool draws_mirrored(std::uint32_t slot) const;
@@ -48,21 +48,24 @@ struct HiZCounts {
   std::array<Part, 2> parts;
 };
 
-/// Of one kind of pass (colour; ids), each of which has a depth of its own. Everything but the bits of visible and
-/// mirrored slots stays on the device: 4 B and 1/8 B a slot, 40 B a block.
+/// Of one kind of pass (colour; ids), each of which has a depth of its own. Everything but the bits of
+/// visible and mirrored slots stays on the device: 4 B and 1/8 B a slot, 40 B a block.
 class HiZ {
  public:
   HiZ(const PassContext& context, const Target& target, const HiZLayout& layout);
 
   /// Which depth picture there is now. No frame may be in flight.
   void resized(const PassContext& context, const Target& target);
-  /// Sets of slots that are visible by timeline, and mirrored; `revision` tells one state of them from another.
+  /// Sets of slots that are visible by timeline, and mirrored; `revision` tells one state of them from
+  /// another.
   void write_slots(const PassContext& context, std::uint64_t revision);
-  /// Outside a pass: finds what a part (0 or 1) draws. Before part 1 the pyramid is made of the depth that part 0 left.
+  /// Outside a pass: finds what a part (0 or 1) draws. Before part 1 the pyramid is made of the depth that
+  /// part 0 left.
   void cull(const PassContext& context, Target& target, std::uint32_t part);
   /// Inside the pass.
   void draw(DrawRecorder& recorder, std::uint32_t part) const;
-  /// What was counted in a frame that is done; nothing when it was not drawn this way, or its place was used again.
+  /// What was counted in a frame that is done; nothing when it was not drawn this way, or its place was used
+  /// again.
   [[nodiscard]] HiZCounts counts(std::uint64_t serial, std::uint32_t frames_in_flight) const;
 
  private:

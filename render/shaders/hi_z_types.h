@@ -13,8 +13,8 @@ using uint = std::uint32_t;
 
 const uint kHiZNone = 0xFFFFFFFFu;
 
-/// Slots [first, first + count): they share state and geometry. One command draws those of them that are to be
-/// drawn, a second one those that are mirrored.
+/// Slots [first, first + count): they share state and geometry. One command draws those of them that are to
+/// be drawn, a second one those that are mirrored.
 struct HiZBlock {
   uint first;
   uint count;
@@ -34,8 +34,8 @@ struct HiZGroup {
 
 struct HiZConstants {
   uvec2 size_px;
-  uint levels;         // of the pyramid
-  uint part;           // 0 or 1
+  uint levels;  // of the pyramid
+  uint part;    // 0 or 1
   uint blocks;
   uint groups_x;       // workgroups in a row
   uint bit_words;      // 32-bit words of a set of slots

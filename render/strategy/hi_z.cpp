@@ -1,6 +1,6 @@
-// Culling on the device: what was seen in the frame before is drawn first, then what else is not hidden behind
-// the depth that this leaves (Greene, Kass and Miller 1993; in two parts as Haar and Aaltonen 2015). The processor touches
-// nothing but what changed.
+// Culling on the device: what was seen in the frame before is drawn first, then what else is not hidden
+// behind the depth that this leaves (Greene, Kass and Miller 1993; in two parts as Haar and Aaltonen 2015).
+// The processor touches nothing but what changed.
 #include <memory>
 #include <new>
 
@@ -65,15 +65,17 @@ class HiZStrategy final : public ListStrategy {
 
   [[nodiscard]] DeviceCounts device_counts(std::uint64_t serial) const override {
     DeviceCounts out;
-    for (std::size_t kind = 0; kind < culling_.size(); ++kind) {
-      if (!culling_[kind]) continue;
-      const HiZCounts counts = culling_[kind]->counts(serial, frames_in_flight_);
-      const auto& [first, second] = counts.parts;
-      const std::uint64_t exact = options_.late_visibility ? 0 : 1;
-      const std::uint64_t triangles = first.triangles + exact * second.triangles;
-      out.reveals += exact * second.drawn;
-      if (kind == color) out.drawn = first.drawn + exact * second.drawn;
-      (kind == color ? out.triangles : out.ids_triangles) = triangles;
+    for (const Kind kind : {color, ids}) {
+      for (const HiZ* culling : {culling_[kind].get(), old_[kind].get()}) {
+        if (culling == nullptr) continue;
+        const HiZCounts counts = culling->counts(serial, frames_in_flight_);
+        const auto& [first, second] = counts.parts;
+        const std::uint64_t exact = options_.late_visibility ? 0 : 1;
+        const std::uint64_t triangles = first.triangles + exact * second.triangles;
+        out.reveals += exact * second.drawn;
+        if (kind == color) out.drawn += first.drawn + exact * second.drawn;
+        (kind == color ? out.triangles : out.ids_triangles) += triangles;
+      }
     }
     return out;
   }
@@ -96,9 +98,10 @@ class HiZStrategy final : public ListStrategy {
     const Kind kind = pass.target().pass == vkr::PassKind::color ? color : ids;
     if (!layout_ || turned_over_) {
       // Frames in flight may still draw by the old one: it is kept. This happens once at most.
-      for (std::unique_ptr<HiZ>& culling : culling_)
-        if (culling) old_.push_back(std::move(culling));
-      if (layout_) old_layout_ = std::move(layout_);
+      if (layout_) {
+        old_ = std::move(culling_);
+        old_layout_ = std::move(layout_);
+      }
       layout_ = std::make_unique<HiZLayout>(scene_, context.gpu,
                                             context.device.properties.limits.maxDrawIndirectCount,
                                             std::exchange(turned_over_, false));
@@ -129,8 +132,7 @@ class HiZStrategy final : public ListStrategy {
   std::uint64_t revision_ = 1;  // of the sets of visible and mirrored slots
   bool turned_over_ = false;    // a slot became mirrored that no command draws
   std::unique_ptr<HiZLayout> layout_, old_layout_;
-  std::array<std::unique_ptr<HiZ>, 2> culling_;
-  std::vector<std::unique_ptr<HiZ>> old_;
+  std::array<std::unique_ptr<HiZ>, 2> culling_, old_;
   std::array<bool, 2> stale_{};
 };
 

@@ -115,6 +115,7 @@ constexpr std::array kWays{Way{"inline"},
                            Way{"octree", NodeForm::indirect},
                            Way{"queries-all", NodeForm::secondaries},
                            Way{"queries-all", NodeForm::indirect},
+                           Way{"hi-z"},
                            Way{"adaptive", NodeForm::secondaries}};
 
 RendererOptions options_of(const Way& way) {
