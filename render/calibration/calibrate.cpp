@@ -22,6 +22,9 @@ class Runs {
   Runs(const CalibrationOptions& options, std::shared_ptr<vkr::Device> device, bool software)
       : options_(options), device_(std::move(device)) {
     test_ = calibration::make_test_scene(calibration::test_sizes(software, options.quick), options.size);
+    calibration::TestSizes few;
+    few.boxes = {1, 2};
+    few_ = calibration::make_test_scene(few, options.size);
     budget_s_ = options.budget_s > 0.0 ? options.budget_s : options.quick ? 8.0 : software ? 75.0 : 15.0;
     how_.longest_frame_s = software ? 0.5 : 0.05;
     if (options.quick) how_.least_rounds = 1, how_.frames = 1;
@@ -33,6 +36,18 @@ class Runs {
   template <class Wanted>
   Result<Run> run(const char* strategy, std::uint32_t per_node, bool shadows, double share,
                   const Wanted& wanted) {
+    return run_on(test_, strategy, per_node, shadows, share, wanted);
+  }
+  /// Of a scene of two boxes.
+  template <class Wanted>
+  Result<Run> run_few(const char* strategy, double share, const Wanted& wanted) {
+    return run_on(few_, strategy, 0, false, share, wanted);
+  }
+
+ private:
+  template <class Wanted>
+  Result<Run> run_on(const TestScene& test, const char* strategy, std::uint32_t per_node, bool shadows,
+                     double share, const Wanted& wanted) {
     RendererOptions o;
     o.shared_device = device_;
     o.size = options_.size;
@@ -46,22 +61,22 @@ class Runs {
     MeasureOptions how = how_;
     how.budget_s = budget_s_ * share;
     how.settle = std::string_view(strategy).find("queries") != std::string_view::npos ? 3
+                 : std::string_view(strategy) == "hi-z"                               ? 2
                  : options_.quick                                                     ? 0
                                                                                       : 1;
     how.progress = [&](double part) {
       if (options_.progress) options_.progress(std::min(1.0, done_ + share * part));
     };
-    auto results = calibration::measure(test_, o, how, wanted);
+    auto results = calibration::measure(test, o, how, wanted);
     done_ += share;
     if (options_.progress) options_.progress(std::min(1.0, done_));
     if (!results) return forward_error(results);
-    return Run{&test_, std::move(*results)};
+    return Run{&test, std::move(*results)};
   }
 
- private:
   const CalibrationOptions& options_;
   std::shared_ptr<vkr::Device> device_;
-  TestScene test_;
+  TestScene test_, few_;
   MeasureOptions how_;
   NodeForm form_ = NodeForm::secondaries;
   double budget_s_ = 0;
@@ -109,6 +124,17 @@ Result<void> measure_octrees(Runs& runs, const Run& flat, bool quick, Fit& fit) 
   return {};
 }
 
+Result<void> measure_hi_z(Runs& runs, const Run& flat, Fit& fit) {
+  Result<Run> all = runs.run("hi-z", 0, false, 0.03, [](const Step& s) {
+    return s.trial == Trial::empty || s.trial == Trial::hidden_boxes;
+  });
+  if (!all) return forward_error(all);
+  Result<Run> few = runs.run_few("hi-z", 0.01, [](const Step& s) { return s.trial == Trial::empty; });
+  if (!few) return forward_error(few);
+  fit.hi_z(flat, *all, *few);
+  return {};
+}
+
 }  // namespace
 
 CalibrationKey calibration_key(const DeviceInfo& device, glm::uvec2 size, std::uint32_t samples,
@@ -132,7 +158,7 @@ Result<Calibration> calibrate(const CalibrationOptions& options) {
   const auto drawn = [](const Step& s) { return s.trial != Trial::hidden_boxes; };
   const auto boxes = [](const Step& s) { return s.trial == Trial::empty || s.trial == Trial::boxes; };
   const double flat_share = !options.shadows ? 0.0 : options.quick ? 0.1 : 0.11;
-  const double first = (options.quick ? 0.6 : 0.46) - flat_share;
+  const double first = (options.quick ? 0.56 : 0.42) - flat_share;
   Result<Run> with = runs.run("inline", 0, options.shadows, first, drawn);
   if (!with) return forward_error(with);
   // Differences to the other strategies are taken without shadows.
@@ -143,6 +169,7 @@ Result<Calibration> calibrate(const CalibrationOptions& options) {
   fit.inline_run(*with);
   // Recording is what it is without the shadows' pass, which has a cost of its own.
   if (options.shadows) out.costs.record_s = std::max(0.0, out.costs.record_s - out.costs.shadow_slot_s);
+  if (Result<void> done = measure_hi_z(runs, *flat, fit); !done) return forward_error(done);
   if (Result<void> done = measure_octrees(runs, *flat, options.quick, fit); !done) return forward_error(done);
   fit.finish();
   return out;

@@ -450,6 +450,24 @@ void Fit::second_part(const Run& kept, const Run& asking) {
   set("secondPartCpuS", c_.second_part_cpu_s, *std::min_element(cpu_s.begin(), cpu_s.end()));
 }
 
+/// An empty frame of few blocks has all that does not depend on their number; one of many adds them; boxes
+/// behind a wall are tested and not drawn. Both parts of an empty frame have a command a block.
+void Fit::hi_z(const Run& flat, const Run& all, const Run& few) {
+  const auto blocks = [](const Run& run) { return static_cast<double>(run.empty().report.draws) / 2.0; };
+  if (blocks(all) <= blocks(few)) return;  // the device cannot
+  const double few_s = Run::device_of(few.empty().steady);
+  set("hiZDeviceS", c_.hi_z_device_s, few_s - Run::device_of(flat.empty().steady));
+  set("hiZBlockS", c_.hi_z_block_s,
+      (Run::device_of(all.empty().steady) - few_s) / (blocks(all) - blocks(few)));
+  std::vector<double> draws, device_s;
+  for (const std::size_t i : all.of(Trial::hidden_boxes)) {
+    draws.push_back(all.step(i).draws);
+    device_s.push_back(all.device_s(i));
+  }
+  if (draws.size() >= 2) set("hiZSlotS", c_.hi_z_slot_s, fit_line(draws, device_s).slope);
+  set("hiZCpuS", c_.hi_z_cpu_s, all.empty().steady.record_s - flat.empty().steady.record_s);
+}
+
 void Fit::indirect(const Run& flat, const Run& fine, const Run& coarse) {
   const auto nodes = [](const Run& run, std::size_t i) {
     return static_cast<double>(run.results[i].report.indirect_commands);

@@ -52,6 +52,8 @@ class Fit {
   void queries(const Run& flat, const Run& each);
   void second_part(const Run& kept, const Run& asking);
   void indirect(const Run& flat, const Run& fine, const Run& coarse);
+  /// Runs of `hi-z`: of the scene that `flat` drew, and of one of a few objects.
+  void hi_z(const Run& flat, const Run& all, const Run& few);
   void finish();
 
  private:

@@ -51,6 +51,11 @@ void Experience::learn(const FrameFacts& f) {
     if (f.runs_per_chunk > 0.0) runs_per_chunk_ = f.runs_per_chunk;
     if (f.in_frustum.draws > 0.0) excess_ = std::clamp(f.in_chunks.draws / f.in_frustum.draws, 1.0, 3.0);
   }
+  if (f.exact_seen && f.in_frustum.draws > 0.0) {
+    culled_ = true;
+    draws_seen_ = share(f.seen.draws, f.in_frustum.draws);
+    vertices_seen_ = share(f.seen.vertices, f.in_frustum.vertices);
+  }
   if (f.exact_queries && f.chunks > 0.0) {
     queried_ = true;
     asked_ = share(f.asked, f.chunks);
@@ -60,6 +65,30 @@ void Experience::learn(const FrameFacts& f) {
     vertices_hidden_ = share(f.hidden.vertices, f.in_chunks.vertices);
     fragments_hidden_ = share(f.hidden.fragments, f.in_chunks.fragments);
   }
+}
+
+void Experience::fill_seen(FrameFacts& f) const {
+  const Shaded all = shaded_fragments(f.in_frustum, f.screen_pixels);
+  const double covered = all.covered_share * f.screen_pixels;
+  if (!f.exact_seen) {
+    double draws = draws_seen_, vertices = vertices_seen_;
+    if (!culled_) {
+      // Never culled so: of k layers over the picture, one and a half are seen; no more than queries left,
+      // which ask about larger things.
+      const double layers = covered > 0.0 ? f.in_frustum.fragments / covered : 1.0;
+      draws = std::clamp(1.5 / std::max(1.0, layers), 0.1, 1.0);
+      if (queried_) draws = std::min(draws, 1.0 - draws_hidden_);
+      vertices = draws;
+    }
+    f.seen = scaled(f.in_frustum, vertices);
+    f.seen.draws = draws * f.in_frustum.draws;
+  }
+  // What is seen is nearer than what is not: it has more than its share of the fragments.
+  f.seen.textured_share = f.in_frustum.textured_share;
+  f.seen.screen_share = f.in_frustum.screen_share;
+  const double share_seen = share(f.seen.draws, f.in_frustum.draws);
+  f.seen.fragments =
+      std::min(f.in_frustum.fragments, std::max(share_seen * f.in_frustum.fragments, 1.5 * covered));
 }
 
 void Experience::fill_octree(FrameFacts& f, std::uint32_t per_node, double chunks_touched) const {
@@ -119,6 +148,8 @@ void Experience::fill_unknown(FrameFacts& f, std::uint32_t per_node, double chun
   }
   if (f.slots_hidden.draws <= 0.0)
     f.slots_hidden = scaled(f.in_frustum, share(f.all_hidden.draws, f.in_chunks.draws));
+  if (f.hi_z_blocks <= 0.0) f.hi_z_blocks = std::ceil(f.visible_slots / 256.0);
+  fill_seen(f);
 }
 
 }  // namespace scenegen::render::model

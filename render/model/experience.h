@@ -38,6 +38,7 @@ class Experience {
  private:
   void fill_octree(FrameFacts& facts, std::uint32_t per_node, double chunks_touched) const;
   void fill_queries(FrameFacts& facts) const;
+  void fill_seen(FrameFacts& facts) const;
 
   // Until something was seen: half-full to full chunks; some of a chunk in the frustum lies outside it.
   double fill_ = 0.7;                                  // draws in a chunk / objects a node
@@ -48,6 +49,8 @@ class Experience {
   double asked_ = 0, asked_fragments_ = 0;       // of chunks; of their fragments
   double chunks_hidden_ = 0, draws_hidden_ = 0;  // of them
   double vertices_hidden_ = 0, fragments_hidden_ = 0;
+  bool culled_ = false;
+  double draws_seen_ = 1, vertices_seen_ = 1;  // of those in the frustum, by culling on the device
 };
 
 }  // namespace scenegen::render::model

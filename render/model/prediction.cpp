@@ -119,6 +119,10 @@ Taken take(Method method, const FrameFacts& f, const PredictionOptions& options)
         t.asked_area = f.asked_fragments;
       }
       break;
+    case Method::hi_z:
+      t.drawn = f.seen;
+      t.drawn.commands = std::min(f.seen.draws, f.hi_z_blocks);
+      break;
   }
   t.counts.drawn_nodes = t.executed;
   t.counts.drawn_objects = t.drawn.draws;
@@ -161,7 +165,7 @@ double nodes_device_s(const Taken& t, const UnitCosts& c, bool indirect) {
 
 std::string_view name_of(Method method) {
   static constexpr std::array<std::string_view, kMethods> kNames{
-      "brute", "inline", "inline-queries", "octree-record", "octree", "queries-all", "queries"};
+      "brute", "inline", "inline-queries", "octree-record", "octree", "queries-all", "queries", "hi-z"};
   return kNames[static_cast<std::size_t>(method)];
 }
 
@@ -230,11 +234,15 @@ Prediction predict(Method method, const FrameFacts& f, const UnitCosts& c, const
   if (way.octree) {
     p.update_octree_s = update_octree_s(n, t);
     p.cull_s = traverse_s(n, t) + cull_octree_s(n, t) + taken.listed * t.list;
-  } else if (method != Method::brute) {
+  } else if (method != Method::brute && method != Method::hi_z) {
     p.cull_s = cull_scene_s(n, t);
   }
-  p.record_s = record_s(f.blended.draws, t) +
-               (way.kept ? record_kept_s(n.rerecorded_draws, t) : record_s(taken.drawn.draws, t));
+  p.record_s = record_s(f.blended.draws, t);
+  if (method == Method::hi_z) {
+    p.record_s += c.hi_z_cpu_s;
+  } else {
+    p.record_s += way.kept ? record_kept_s(n.rerecorded_draws, t) : record_s(taken.drawn.draws, t);
+  }
   if (way.kept) p.secondaries_s = secondaries_s(n, t);
   if (asks) {
     p.queries_cpu_s = ask_s(n, t) + receive_queries_s(n, t);
@@ -257,6 +265,8 @@ Prediction predict(Method method, const FrameFacts& f, const UnitCosts& c, const
     p.query_device_s = queries_device_s(n.queried_nodes, taken.found, taken.asked_area, covered, c);
     if (taken.hidden > 0.0) p.query_device_s += c.second_part_device_s;
   }
+  if (method == Method::hi_z)
+    p.query_device_s = c.hi_z_device_s + f.hi_z_blocks * c.hi_z_block_s + f.visible_slots * c.hi_z_slot_s;
   const double sky_s =
       shaded_fragments(all, f.screen_pixels).covered_share * f.screen_pixels * c.background_s;
   p.gpu_s = std::max(0.0, c.empty_device_s - sky_s) + p.shadows_device_s + p.draw_device_s + p.query_device_s;

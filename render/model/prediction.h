@@ -18,9 +18,10 @@ enum class Method : std::uint8_t {
   octree_record,
   octree,
   queries_all,
-  queries
+  queries,
+  hi_z  ///< culled on the device: not one of the dissertation's
 };
-constexpr std::size_t kMethods = 7;
+constexpr std::size_t kMethods = 8;
 [[nodiscard]] std::string_view name_of(Method method);
 
 /// What the device has to draw.
@@ -71,7 +72,11 @@ struct FrameFacts {
   Load all_hidden;
   Load slots_hidden;  ///< slots that `inline_queries` found hidden, or would
 
-  bool exact_inline = false, exact_octree = false, exact_queries = false;
+  // Culling on the device.
+  double hi_z_blocks = 0;  ///< of slots, each culled by a workgroup and drawn by one command a part
+  Load seen;               ///< what it finds not hidden, and draws
+
+  bool exact_inline = false, exact_octree = false, exact_queries = false, exact_seen = false;
 };
 
 /// Seconds, stage by stage.
@@ -85,7 +90,7 @@ struct Prediction {
   double shadows_cpu_s = 0;    ///< walking and recording what casts shadows
   double shadows_device_s = 0;
   double draw_device_s = 0;   ///< max(T_state, T_vert, T_frag)(S_vis)
-  double query_device_s = 0;  ///< max(..., T_exec)(H_q)
+  double query_device_s = 0;  ///< max(..., T_exec)(H_q); of hi_z: pyramid and culling
   double cpu_s = 0;           ///< (2.10) + T_0
   double gpu_s = 0;           ///< (2.11) + T_0
   double frame_s = 0;         ///< (2.12)

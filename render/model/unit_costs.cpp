@@ -58,6 +58,10 @@ UnitCosts rough_costs(bool software_device) {
   c.seen_query_s = software_device ? 0.0 : 0.15e-6;
   c.asked_fragment_s = software_device ? 1e-9 : 0.5e-9;
   c.second_part_device_s = software_device ? 100e-6 : 30e-6;
+  c.hi_z_cpu_s = 60e-6;
+  c.hi_z_device_s = software_device ? 5e-3 : 100e-6;
+  c.hi_z_block_s = software_device ? 2e-6 : 40e-9;
+  c.hi_z_slot_s = software_device ? 50e-9 : 0.1e-9;
   c.shadow_slot_s = 3e-9;
   c.shadow_vertex_s = software_device ? 20e-9 : 0.5e-9;
   // lavapipe; NVIDIA H200 (driver 580), by the growth of the process (docs/BENCHMARKS.md).

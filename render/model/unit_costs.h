@@ -43,6 +43,7 @@ struct UnitCosts {
   double ask_s = 0;              ///< t_buf: recording one query with its box, and sending it
   double receive_s = 0;          ///< t_recv: reading one result
   double second_part_cpu_s = 0;  ///< exact queries: what a pass in two parts costs more
+  double hi_z_cpu_s = 0;         ///< culling on the device: recording it, all draws included
   double shadow_slot_s = 0;      ///< walking and drawing one slot that casts a shadow
   double empty_cpu_s = 0;        ///< T_0: a frame with nothing in it, copying its picture out included
 
@@ -62,6 +63,9 @@ struct UnitCosts {
   double seen_query_s = 0;                  ///< what one whose box is seen takes beyond that
   double asked_fragment_s = 0;              ///< a fragment of a query's box that is seen
   double second_part_device_s = 0;  ///< T_2: exact queries: copy, scatter, barriers, the pass's second part
+  double hi_z_device_s = 0;         ///< culling on the device: the depth pyramid, the pass's second part
+  double hi_z_block_s = 0;          ///< a block of slots: its workgroups, and commands that draw nothing
+  double hi_z_slot_s = 0;           ///< a slot that is visible by timeline: its tests
   double shadow_vertex_s = 0;       ///< one vertex in the shadow map's pass
   double empty_device_s = 0;        ///< T_0
 

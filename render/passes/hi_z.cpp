@@ -89,7 +89,7 @@ HiZLayout::HiZLayout(const DrawScene& scene, const GpuScene& gpu, std::uint32_t 
     if (scene.mirrored(slot)) ranges.back().mirrored = mirrored = true;
     last = &primitive;
   }
-  if (!ranges.empty() && scene.solid_end() / ranges.size() < 128) block_slots = 64;
+  block_slots = block_slots_of(scene.solid_end(), ranges.size());
 
   for (const Range& range : ranges) {
     const DrawPrimitive& primitive = scene.primitive(range.first);

@@ -31,6 +31,11 @@ struct HiZLayout {
 
   bool mirrored = false;  ///< some blocks have a command for mirrored slots
 
+  /// 256, or 64 where geometries are shared by few.
+  [[nodiscard]] static std::uint32_t block_slots_of(std::uint64_t slots, std::uint64_t groups) {
+    return groups > 0 && slots / groups < 128 ? 64 : 256;
+  }
+
   /// Blocks of 256 slots where as many share a geometry, else of 64. Those in which a slot is mirrored now
   /// have a command for such slots, with `all_mirrored` every one.
   HiZLayout(const DrawScene& scene, const GpuScene& gpu, std::uint32_t longest_run, bool all_mirrored);

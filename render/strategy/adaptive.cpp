@@ -1,5 +1,6 @@
-// D 3.3: in each frame the cheapest of `inline`, `octree` and `queries` by the model, corrected by what
-// frames took. `octree` is `queries` with nothing asked: one object, which keeps one octree and its commands.
+// D 3.3: in each frame the cheapest of `inline`, `octree`, `queries` and `hi-z` by the model, corrected by
+// what frames took. `octree` is `queries` with nothing asked: one object, which keeps one octree and its
+// commands.
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -10,6 +11,7 @@
 #include "render/model/experience.h"
 #include "render/passes/pass_recording.h"
 #include "render/strategy/cached_octree.h"
+#include "render/strategy/device_culled.h"
 #include "render/strategy/estimate_load.h"
 #include "render/strategy/octree_choice.h"
 
@@ -109,15 +111,20 @@ class Adaptive final : public Strategy {
   void resized(glm::uvec2 size) override;
   void finished(const FrameTimes& measured) override;
   [[nodiscard]] model::FrameFacts facts() const override { return taken().facts(); }
+  [[nodiscard]] DeviceCounts device_counts(std::uint64_t serial) const override {
+    return device_->device_counts(serial);
+  }
   [[nodiscard]] std::vector<ChunkBox> chunk_boxes() const override { return taken().chunk_boxes(); }
   [[nodiscard]] const ChoiceReport* choice() const override { return &report_; }
   void add_memory(MemoryAccount& to) const override {
     flat_->add_memory(to);
     tree_->add_memory(to);
+    device_->add_memory(to);
   }
 
  private:
-  enum Way : std::size_t { flat, tree };
+  enum Way : std::size_t { flat, tree, device };
+  static constexpr std::size_t kWays = 3;
   /// A frame on its way.
   struct Drawn {
     std::uint64_t frame = 0;
@@ -128,7 +135,12 @@ class Adaptive final : public Strategy {
     model::Sides predicted;
   };
 
-  [[nodiscard]] Strategy& taken() const { return way_ == tree ? *tree_ : *flat_; }
+  [[nodiscard]] Strategy& strategy_of(Way way) const {
+    if (way == tree) return *tree_;
+    return way == device ? static_cast<Strategy&>(*device_) : *flat_;
+  }
+  [[nodiscard]] Strategy& taken() const { return strategy_of(way_); }
+  [[nodiscard]] model::Method method_of(Way way, const model::FrameFacts& facts) const;
   [[nodiscard]] bool due() const;
   void learn_of_last_frame();
   void gather(const View& view);
@@ -141,7 +153,7 @@ class Adaptive final : public Strategy {
   [[nodiscard]] bool nearly_done() const { return tree_->pending() <= kNearlyDone; }
   /// Is the octree built, and nearly worth being taken?
   [[nodiscard]] bool near() const {
-    return built_ && tree_->available() && offers_[tree].frame_s < kNear * offers_[flat].frame_s;
+    return built_ && tree_->available() && offers_[tree].frame_s < kNear * offers_[way_].frame_s;
   }
   void prepare();
   void expect();
@@ -150,6 +162,7 @@ class Adaptive final : public Strategy {
   StrategyContext context_;
   std::unique_ptr<Strategy> flat_;
   std::unique_ptr<CachedOctree> tree_;
+  std::unique_ptr<DeviceCulled> device_;
   std::uint32_t per_node_;
   Way way_ = flat;
   model::PredictionOptions predicting_;
@@ -164,8 +177,8 @@ class Adaptive final : public Strategy {
   model::FrameFacts exact_;  // at the last decision: what the present way found
   model::FrameFacts facts_;  // the same in steady state, with guesses for the other
   double stale_draws_ = 0;   // of kept commands in the frustum, at the last decision
-  std::array<model::Offer, 2> offers_;
-  std::array<model::Sides, 2> raw_;  // not corrected
+  std::array<model::Offer, kWays> offers_;
+  std::array<model::Sides, kWays> raw_;  // not corrected
   ChoiceReport report_;
 
   std::uint64_t frame_ = 0;
@@ -177,7 +190,7 @@ class Adaptive final : public Strategy {
   bool preparing_ = false;
   bool built_ = false;
   std::array<Drawn, 8> drawn_;
-  std::array<std::size_t, 2> warned_{};
+  std::array<std::size_t, kWays> warned_{};
 };
 
 Adaptive::Adaptive(const StrategyContext& context)
@@ -190,6 +203,9 @@ Adaptive::Adaptive(const StrategyContext& context)
   std::unique_ptr<Strategy> made = make_queries(in_slices);
   assert(dynamic_cast<CachedOctree*>(made.get()) != nullptr);
   tree_.reset(static_cast<CachedOctree*>(made.release()));
+  device_ = make_device_culled(context);
+  warned_[device] =
+      device_->warnings().size();  // that the device cannot is no news here: there are other ways
   predicting_.frames_in_flight = context.frames_in_flight;
   predicting_.indirect_nodes = indirect_nodes(context);
   predicting_.exact = !context.options.late_visibility;
@@ -199,6 +215,7 @@ Adaptive::Adaptive(const StrategyContext& context)
 
 void Adaptive::update(const timeline::ChangeSet& changes) {
   flat_->update(changes);
+  device_->update(changes);
   way_ == tree ? tree_->update(changes) : tree_->note(changes);
   last_changed_ = static_cast<double>(changes.count());
   changed_.add(last_changed_);
@@ -216,13 +233,14 @@ void Adaptive::plan(const View& view) {
   ++frame_;
   ++since_change_;
   learn_of_last_frame();
-  if (way_ == tree && !tree_->available()) way_ = flat;  // memory ran out while it drew
+  // Memory ran out while it drew.
+  if ((way_ == tree && !tree_->available()) || (way_ == device && !device_->available())) way_ = flat;
   taken().plan(view);
   report_.choose_s = 0;
   if (context_.options.change_every != 0) {
     force(view);
   } else {
-    if (way_ == flat && (preparing_ || near())) prepare();
+    if (way_ != tree && (preparing_ || near())) prepare();
     if (due() || (preparing_ && nearly_done())) {
       const auto start = Clock::now();
       gather(view);
@@ -242,11 +260,12 @@ void Adaptive::learn_of_last_frame() {
     rerecorded_draws_.add(tree_->rerecorded_draws());
 }
 
-/// What there is to do in this frame, in both ways. The present way has planned it.
+/// What there is to do in this frame, in all ways. The present way has planned it.
 void Adaptive::gather(const View& view) {
   facts_ = {};
   stale_draws_ = 0;
-  if (way_ == flat) {
+  if (way_ != tree) {
+    if (way_ == device) flat_->plan(view);
     facts_ = flat_->facts();
     if (tree_->available() && built_ && !tree_->behind()) {
       tree_->plan(view);
@@ -264,6 +283,12 @@ void Adaptive::gather(const View& view) {
   } else {
     facts_ = tree_->facts();
   }
+  if (way_ == device) {
+    device_->add_seen(facts_);
+    // What is seen after a change to it says nothing yet.
+    if (since_change_ < kSettling + context_.frames_in_flight) facts_.exact_seen = false;
+  }
+  facts_.hi_z_blocks = device_->blocks();
   facts_.changed = changed_.value();
   if (context_.shadows) {
     facts_.shadow_slots = facts_.visible.draws;
@@ -321,6 +346,8 @@ void Adaptive::make_offers() {
     raw_[tree] = asking;
     tree_s = asking_s;
   }
+  raw_[device] = sides(Method::hi_z);
+  offers_[device] = {Method::hi_z, corrected(Method::hi_z, raw_[device]), 0.0, device_->available(), true};
   const bool ready = built_ && nearly_done();
   offers_[tree] = {method, tree_s, way_ == tree ? 0.0 : change_to_tree_s(), tree_->available(), ready};
 }
@@ -334,7 +361,7 @@ void Adaptive::decide(const View& view) {
   report_.verdict = decision.verdict;
   report_.choose_s += seconds_since(start);
   const auto wanted = static_cast<Way>(decision.take);
-  preparing_ = wanted == tree && way_ == flat && !offers_[tree].ready;
+  preparing_ = wanted == tree && way_ != tree && !offers_[tree].ready;
   if (wanted != way_ && !preparing_) {
     take(wanted, view);
     choice_.changed(decision);
@@ -364,23 +391,32 @@ void Adaptive::take(Way way, const View& view) {
   taken().plan(view);
 }
 
+/// For tests: round all ways there are.
 void Adaptive::force(const View& view) {
-  if (frame_ % context_.options.change_every == 0 && tree_->available()) {
-    take(way_ == tree ? flat : tree, view);
-  } else if (way_ == flat && frame_ % 2 == 0) {
+  if (frame_ % context_.options.change_every == 0) {
+    auto next = static_cast<Way>((way_ + 1) % kWays);
+    if (next == tree && !tree_->available()) next = device;
+    if (next == device && !device_->available()) next = flat;
+    if (next != way_) take(next, view);
+  } else if (way_ != tree && frame_ % 2 == 0) {
     (void)tree_->catch_up(100);
   }
-  const model::Method method = way_ == tree ? model::Method::octree : model::Method::inline_frustum;
+  const model::Method method = method_of(way_, {});
   report_.verdict = {method, method, 0, 0, model::Reason::forced};
+}
+
+model::Method Adaptive::method_of(Way way, const model::FrameFacts& facts) const {
+  if (way == flat) return model::Method::inline_frustum;
+  if (way == device) return model::Method::hi_z;
+  return facts.asked > 0.0 ? model::Method::queries : model::Method::octree;
 }
 
 /// Remembers what this frame should take, to compare it with what it took.
 void Adaptive::expect() {
   model::FrameFacts now = exact_;
   now.changed = last_changed_;
-  const model::Method method = way_ == flat      ? model::Method::inline_frustum
-                               : now.asked > 0.0 ? model::Method::queries
-                                                 : model::Method::octree;
+  const model::Method method = method_of(way_, now);
+  if (way_ == device) now.seen = facts_.seen;  // of which a part is always guessed
   const model::Prediction p = model::predict(method, now, context_.costs, predicting_);
   drawn_[frame_ % drawn_.size()] = {frame_,
                                     way_,
@@ -393,12 +429,14 @@ void Adaptive::expect() {
 void Adaptive::draw_solid(PassRecording& pass) {
   assert(pass.context().frame.serial == frame_);
   Drawn& drawn = drawn_[frame_ % drawn_.size()];
-  if (drawn.frame != frame_) drawn = {frame_, way_, model::Method::inline_frustum, since_change_, false, {}};
+  if (drawn.frame != frame_) drawn = {frame_, way_, method_of(way_, {}), since_change_, false, {}};
   ++passes_;
   taken().draw_solid(pass);
   counters_ = taken().counters();
   if (way_ == tree) report_.used = counters_.queries > 0 ? "queries" : "octree";
-  if (way_ == flat || !tree_->available()) report_.used = "inline";
+  if (way_ == device && device_->available()) report_.used = "hi-z";
+  if (way_ == flat || (way_ == tree && !tree_->available()) || (way_ == device && !device_->available()))
+    report_.used = "inline";
   forward();
 }
 
@@ -411,6 +449,7 @@ void Adaptive::resized(glm::uvec2 size) {
   context_.size = size;
   flat_->resized(size);
   tree_->resized(size);
+  device_->resized(size);
 }
 
 void Adaptive::finished(const FrameTimes& measured) {
@@ -420,13 +459,13 @@ void Adaptive::finished(const FrameTimes& measured) {
   constexpr double kNewest = 0.2;
   cpu_s_ += kNewest * (std::min(measured.cpu_s, 4.0 * cpu_s_) - cpu_s_);
   if (measured.gpu_s > 0.0) gpu_s_ += kNewest * (std::min(measured.gpu_s, 4.0 * gpu_s_) - gpu_s_);
-  (drawn.way == tree ? static_cast<Strategy&>(*tree_) : *flat_).finished(measured);
+  strategy_of(drawn.way).finished(measured);
   if (drawn.usual)
     correction_.measured(drawn.method, drawn.since_change, drawn.predicted, {measured.cpu_s, measured.gpu_s});
 }
 
 void Adaptive::forward() {
-  const std::array<const Strategy*, 2> ways{flat_.get(), tree_.get()};
+  const std::array<const Strategy*, kWays> ways{flat_.get(), tree_.get(), device_.get()};
   for (std::size_t i = 0; i < ways.size(); ++i) {
     const std::vector<std::string>& all = ways[i]->warnings();
     for (; warned_[i] < all.size(); ++warned_[i]) warnings_.push_back(all[warned_[i]]);

@@ -6,15 +6,36 @@
 
 #include "render/passes/hi_z.h"
 #include "render/passes/pass_recording.h"
-#include "render/strategy/list_strategy.h"
+#include "render/strategy/device_culled.h"
+#include "render/strategy/estimate_load.h"
 
 namespace scenegen::render {
 namespace {
 
-class HiZStrategy final : public ListStrategy {
+/// As HiZLayout makes them, mirrored slots left aside.
+double count_blocks(const DrawScene& scene) {
+  std::vector<std::uint32_t> groups;
+  const DrawPrimitive* last = nullptr;
+  for (std::uint32_t slot = 0; slot < scene.solid_end(); ++slot) {
+    const DrawPrimitive& primitive = scene.primitive(slot);
+    if (last == nullptr ||
+        (last != &primitive && (last->batch != primitive.batch || last->geometry != primitive.geometry)))
+      groups.push_back(0);
+    ++groups.back();
+    last = &primitive;
+  }
+  const std::uint32_t each = HiZLayout::block_slots_of(scene.solid_end(), groups.size());
+  double blocks = 0;
+  for (const std::uint32_t slots : groups) blocks += (slots + each - 1) / each;
+  return blocks;
+}
+
+class HiZStrategy final : public DeviceCulled {
  public:
   explicit HiZStrategy(const StrategyContext& context)
-      : ListStrategy(context), frames_in_flight_(context.frames_in_flight) {
+      : DeviceCulled(context),
+        frames_in_flight_(context.frames_in_flight),
+        blocks_(count_blocks(context.scene)) {
     if (!context.device.indirect_nodes) {
       go_on_as_inline("the device has no indirect draws with a first instance");
     } else if (!vkr::can_sample_depth(context.device, vk::SampleCountFlagBits::e4)) {
@@ -80,6 +101,33 @@ class HiZStrategy final : public ListStrategy {
     return out;
   }
 
+  void finished(const FrameTimes& measured) override {
+    const DeviceCounts counts = device_counts(measured.serial);
+    if (counts.drawn > 0) last_ = counts;
+  }
+
+  [[nodiscard]] bool available() const override { return !inline_; }
+  [[nodiscard]] double blocks() const override { return blocks_; }
+  void add_seen(model::FrameFacts& facts) const override {
+    facts.hi_z_blocks = blocks_;
+    if (inline_ || last_.drawn == 0) return;
+    const model::Load& all = facts.in_frustum;
+    facts.seen.draws = std::min(static_cast<double>(last_.drawn), all.draws);
+    facts.seen.triangles = std::min(static_cast<double>(last_.triangles), all.triangles);
+    facts.seen.vertices =
+        all.triangles > 0.0 ? all.vertices * facts.seen.triangles / all.triangles : facts.seen.draws;
+    facts.exact_seen = true;
+  }
+  [[nodiscard]] model::FrameFacts facts() const override {
+    model::FrameFacts facts = ListStrategy::facts();
+    DrawList in_frustum;  // the device does not tell
+    list_in_frustum(scene_, cull_planes(frustum_of(view_.clip_from_world), scene_.bounds_m()), in_frustum);
+    facts.in_frustum = load_of_slots(scene_, in_frustum.solid, ScreenArea(view_, size_));
+    facts.exact_inline = true;
+    add_seen(facts);
+    return facts;
+  }
+
   void resized(glm::uvec2 size) override {
     ListStrategy::resized(size);
     stale_ = {true, true};
@@ -128,6 +176,8 @@ class HiZStrategy final : public ListStrategy {
   }
 
   std::uint32_t frames_in_flight_;
+  double blocks_;
+  DeviceCounts last_;
   bool inline_ = false;
   std::uint64_t revision_ = 1;  // of the sets of visible and mirrored slots
   bool turned_over_ = false;    // a slot became mirrored that no command draws
@@ -138,8 +188,12 @@ class HiZStrategy final : public ListStrategy {
 
 }  // namespace
 
-std::unique_ptr<Strategy> make_hi_z(const StrategyContext& context) {
+std::unique_ptr<DeviceCulled> make_device_culled(const StrategyContext& context) {
   return std::make_unique<HiZStrategy>(context);
+}
+
+std::unique_ptr<Strategy> make_hi_z(const StrategyContext& context) {
+  return make_device_culled(context);
 }
 
 }  // namespace scenegen::render

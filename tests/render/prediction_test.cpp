@@ -25,6 +25,10 @@ UnitCosts units() {
   c.ask_s = 23;
   c.receive_s = 29;
   c.second_part_cpu_s = 1000;
+  c.hi_z_cpu_s = 47;
+  c.hi_z_device_s = 300;
+  c.hi_z_block_s = 5;
+  c.hi_z_slot_s = 0.25;
   c.shadow_slot_s = 0.125;
   c.empty_cpu_s = 10'000;
   c.draw_s = {Curve{{3, 36}, {40, 73}}, Curve{{3, 36}, {50, 116}}};  // 37 + v; 44 + 2 v from 3 on
@@ -83,6 +87,28 @@ constexpr double kCull = 30 * 5 + 50 * 7;   // nodes, boxes
 constexpr double kSecondaries = 12 * 105.;  // 15 draws each
 
 }  // namespace
+
+TEST_CASE(
+    "prediction: culling on the device costs by blocks and by what is visible, and draws what is seen") {
+  FrameFacts f = facts();
+  f.hi_z_blocks = 4;
+  f.seen = {20, 20 * 36, 10, 0, 0.25};
+  const Prediction p = predict(Method::hi_z, f, units(), kOneByOne);
+  CHECK(p.cull_s == 0);
+  CHECK(p.record_s == Approx(47));
+  CHECK(p.query_device_s == Approx(300 + 4 * 5 + 1000 * 0.25));
+  // As `inline` draws the same, but for what commands cost: four in place of twenty.
+  FrameFacts same = f;
+  same.in_frustum = f.seen;
+  const Prediction flat = predict(Method::inline_frustum, same, units(), kOneByOne);
+  CHECK(p.draw_device_s < flat.draw_device_s);
+  same.in_frustum.commands = 4;
+  CHECK(p.draw_device_s == Approx(predict(Method::inline_frustum, same, units(), kOneByOne).draw_device_s));
+  // The sets of visible slots are written whatever changes; nothing else is.
+  f.changed = 500;
+  CHECK(predict(Method::hi_z, f, units(), kOneByOne).update_octree_s == 0);
+  CHECK(name_of(Method::hi_z) == "hi-z");
+}
 
 TEST_CASE("predictions: names are those of the strategies") {
   CHECK(name_of(Method::brute) == "brute");
