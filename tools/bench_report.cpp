@@ -8,6 +8,7 @@
 #include <set>
 #include <vector>
 
+#include "tools/bench_names.h"
 #include "tools/text.h"
 
 namespace scenegen::tools {
@@ -15,17 +16,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// The member at "frameMs/median", or null.
 ordered_json at(const ordered_json& object, const std::string& path) {
-  const ordered_json* here = &object;
-  for (std::size_t begin = 0; begin <= path.size();) {
-    const std::size_t end = std::min(path.find('/', begin), path.size());
-    const std::string name = path.substr(begin, end - begin);
-    if (!here->is_object() || !here->contains(name)) return {};
-    here = &here->at(name);
-    begin = end + 1;
-  }
-  return *here;
+  return bench_member(object, path);
 }
 
 std::string text(const ordered_json& object, const std::string& path) {
@@ -47,58 +39,71 @@ struct Row {
 };
 /// What is seen from one camera of one scene.
 struct BenchView {
-  std::string file, camera;
+  std::string scene, camera;  ///< titles
   std::vector<Row> rows;
   double best_ms = 0;
 
-  [[nodiscard]] std::string title() const { return file + (camera.empty() ? "" : ", " + camera); }
+  [[nodiscard]] std::string title() const { return scene + (camera.empty() ? "" : ", " + camera); }
 };
 
-/// Labels that say what differs: device and frames in flight only where they do.
-void label(BenchView& view) {
+std::size_t number_of(const ordered_json* results, std::span<const ordered_json> all) {
+  return static_cast<std::size_t>(results - all.data()) + 1;
+}
+
+/// Labels that say what differs: device, frames in flight and results only where they do.
+void label(BenchView& view, std::span<const ordered_json> results) {
   std::set<std::string> devices;
   std::set<std::string> in_flight;
   for (const Row& row : view.rows) {
     devices.insert(text(*row.json, "device"));
     in_flight.insert(at(*row.json, "framesInFlight").dump());
   }
+  std::map<std::string, int> known;
   for (Row& row : view.rows) {
     row.label = text(*row.json, "strategy");
     if (in_flight.size() > 1) row.label += ", " + at(*row.json, "framesInFlight").dump() + " in flight";
     if (devices.size() > 1) row.label += ", " + text(*row.json, "device");
+    ++known[row.label];
+  }
+  for (Row& row : view.rows) {
+    if (known[row.label] > 1) row.label += ", results " + std::to_string(number_of(row.results, results));
   }
 }
 
 std::vector<BenchView> views_of(std::span<const ordered_json> results) {
+  const BenchNames scenes(results, "file");
+  const BenchNames cameras(results, "camera");
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> known;
   std::vector<BenchView> out;
   for (const ordered_json& result : results) {
     const auto cases = result.find("cases");
     if (cases == result.end() || !cases->is_array()) continue;
     for (const ordered_json& c : *cases) {
-      const std::string file = base_name(text(c, "file"));
-      const std::string camera = base_name(text(c, "camera"));
-      auto view = std::find_if(out.begin(), out.end(),
-                               [&](const BenchView& v) { return v.file == file && v.camera == camera; });
-      if (view == out.end()) view = out.insert(out.end(), BenchView{file, camera, {}, 0});
-      view->rows.push_back({&c, &result, {}});
+      const std::size_t scene = scenes.find(result, text(c, "file"));
+      const std::size_t camera = cameras.find(result, text(c, "camera"));
+      const auto [place, added] = known.emplace(std::pair(scene, camera), out.size());
+      if (added) out.push_back({scenes.title(scene), cameras.title(camera), {}, 0});
+      BenchView& view = out[place->second];
+      view.rows.push_back({&c, &result, {}});
       const ordered_json mean = at(c, "frameMs/mean");
-      if (mean.is_number() && (view->best_ms <= 0 || mean.get<double>() < view->best_ms))
-        view->best_ms = mean.get<double>();
+      if (mean.is_number() && (view.best_ms <= 0 || mean.get<double>() < view.best_ms))
+        view.best_ms = mean.get<double>();
     }
   }
-  for (BenchView& view : out) label(view);
+  for (BenchView& view : out) label(view, results);
   return out;
 }
 
+/// Loading and the first frame. A viewer's own time of loading goes before that of the scene, which is ours.
 Cell load_ms(const Row& row) {
-  const ordered_json scenes = at(*row.results, "scenes");
   const ordered_json start = at(*row.json, "startMs");
+  ordered_json load = at(*row.json, "loadMs");
+  const ordered_json scenes = at(*row.results, "scenes");
   for (const ordered_json& scene : scenes) {
-    const ordered_json load = at(scene, "loadMs");
-    if (text(scene, "file") == text(*row.json, "file") && load.is_number() && start.is_number())
-      return load.get<double>() + start.get<double>();
+    if (!load.is_number() && text(scene, "file") == text(*row.json, "file")) load = at(scene, "loadMs");
   }
-  return cell(at(*row.json, "loadMs"));
+  if (load.is_number() && start.is_number()) return load.get<double>() + start.get<double>();
+  return cell(load);
 }
 
 Cell memory_bytes(const Row& row) {
@@ -120,28 +125,29 @@ DocumentTable frame_table(const BenchView& view, const std::string& id) {
                  {"p75", "75 %", "ms"},
                  {"p95", "95 %", "ms", Origin::ours, lower},
                  {"cpuMs", "processor", "ms", Origin::ours, lower},
+                 {"processCpuMs", "processor, all threads", "ms", Origin::ours, lower},
                  {"gpuMs", "device", "ms", Origin::ours, lower},
                  {"vsBest", "over the best", "", Origin::ours, lower},
                  {"loadMs", "load to first frame", "ms", Origin::ours, lower},
                  {"memoryBytes", "memory", "B", Origin::ours, lower},
                  {"correctness", "pixels as ours", "%", Origin::ours, higher}};
-  std::string failures;
   for (const Row& row : view.rows) {
     const ordered_json& c = *row.json;
     const ordered_json mean = at(c, "frameMs/mean");
     out.rows.push_back({row.label, cell(mean), cell(at(c, "frameMs/low")), cell(at(c, "frameMs/high")),
                         cell(at(c, "frameMs/median")), cell(at(c, "frameMs/p25")), cell(at(c, "frameMs/p75")),
                         cell(at(c, "frameMs/p95")), cell(at(c, "cpuMs/mean")),
-                        cell(at(c, "stagesMs/gpu/mean")),
+                        cell(at(c, "processCpuMs/mean")), cell(at(c, "stagesMs/gpu/mean")),
                         mean.is_number() ? Cell(mean.get<double>() / view.best_ms) : Cell(), load_ms(row),
                         memory_bytes(row), cell(at(c, "correctness"))});
-    if (const std::string error = text(c, "error"); !error.empty())
-      failures += " " + row.label + " failed: " + error + ".";
   }
   out.note =
       "Mean with its 95 % interval over the runs (Student), median, quartiles and 95th percentile over all "
-      "frames." +
-      failures;
+      "frames. Processor: what the renderer works for a frame, not waiting; all threads: processor time of "
+      "all that "
+      "loads and draws (a software device too, and a browser's processes), whose sum over the cores may be "
+      "above the "
+      "frame's time. Without figures: what failed.";
   return out;
 }
 
@@ -298,7 +304,17 @@ std::string machine_line(const ordered_json& results) {
 DocumentSection bench_section_of_all(std::span<const ordered_json> results, const std::string& id) {
   const std::vector<BenchView> views = views_of(results);
   DocumentSection out{id, "Benchmark", {summary(views)}, {}};
-  for (const ordered_json& result : results) out.paragraphs.push_back(machine_line(result));
+  for (const ordered_json& result : results) {
+    const std::string number =
+        results.size() > 1 ? "Results " + std::to_string(number_of(&result, results)) + ": " : "";
+    out.paragraphs.push_back(number + machine_line(result));
+  }
+  for (const BenchView& view : views) {
+    for (const Row& row : view.rows) {
+      if (const std::string why = text(*row.json, "error"); !why.empty())
+        out.failures.push_back({view.title() + ": " + row.label, why});
+    }
+  }
   if (views.size() > 1) {
     if (Chart chart = overview_chart(views, id + "-views"); !chart.series.empty())
       out.blocks.emplace_back(std::move(chart));

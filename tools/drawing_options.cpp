@@ -138,7 +138,7 @@ double CameraMan::played_s(double duration_s) const {
 }
 
 render::View CameraMan::view(const timeline::Player& player, double time_s) const {
-  if (path_) return path_->view(time_s, aspect_);
+  if (path_) return path_->view(time_s - begin_s_, aspect_);
   if (camera_) return render::view_of_camera(*camera_, player.world_from_camera(id_), aspect_);
   return framed_;
 }

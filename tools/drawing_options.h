@@ -52,6 +52,8 @@ class CameraMan {
   /// As --camera-path names it: docs/CAMERA_PATH.md.
   [[nodiscard]] static Result<CameraMan> of_path(const std::string& wanted, const Scene& scene,
                                                  glm::uvec2 size);
+  /// The path begins at this time of what is played; a camera of the scene knows no such thing.
+  void begin_at(double time_s) { begin_s_ = time_s; }
   /// How long a scene with a timeline of `duration_s` is played: a still scene as long as the path moves.
   [[nodiscard]] double played_s(double duration_s) const;
   /// `time_s`: what the player was sent to; that of a still scene stays at 0.
@@ -63,6 +65,7 @@ class CameraMan {
  private:
   float aspect_ = 1.0F;
   std::optional<render::CameraPath> path_;
+  double begin_s_ = 0;
   std::optional<Camera> camera_;
   CameraId id_;
   render::View framed_;

@@ -8,6 +8,7 @@
 #include "scene/limits.h"
 #include "tools/bench_results.h"
 #include "tools/calibrations.h"
+#include "tools/camera_paths.h"
 #include "tools/drawing_options.h"
 #include "tools/experiments/run.h"
 #include "tools/sceneplay.h"
@@ -25,10 +26,16 @@ struct ExperimentRequest {
   std::uint64_t seed = 1;
   std::uint32_t repeat = 0;
   glm::uvec2 size{0};
+  std::vector<std::string> camera_paths;
   DrawingOptions drawing;
   bool quiet = false;
   std::vector<std::string> arguments;
 };
+
+Result<void> not_empty(const std::string& text) {
+  if (text.empty()) return fail(ErrorKind::usage, "", "is empty");
+  return {};
+}
 
 Result<void> make_folder(const std::string& folder) {
   std::error_code error;
@@ -77,6 +84,7 @@ class Laboratory {
     context_.width = size.x;
     context_.height = size.y;
     context_.samples = request_.drawing.samples;
+    context_.camera_paths = request_.camera_paths;
     context_.progress = &progress_;
     if (std::any_of(chosen_.begin(), chosen_.end(), draws)) {
       auto device = render::share_device(request_.drawing.renderer().device);
@@ -156,6 +164,7 @@ class Laboratory {
                            {"quick", context_.quick},
                            {"size", {context_.width, context_.height}},
                            {"samples", context_.samples},
+                           {"cameraPaths", context_.camera_paths},
                            {"arguments", request_.arguments},
                            {"seconds", seconds}};
     const std::filesystem::path folder(request_.folder);
@@ -211,6 +220,11 @@ int experiment_verb(std::span<const std::string> arguments) {
               "what suits the experiment");
   options.add("--size", size2_value(r.size, {16, 16}, {limits::kMaxFrameSide, limits::kMaxFrameSide}, "WxH"),
               "size of the pictures in pixels", Role::run, "1920x1080; with --quick 320x180");
+  options.add(
+      "--camera-path", texts_value(r.camera_paths, "FILE|NAME", camera_path_range(), not_empty),
+      "camera path of merged-batch; may be given several times: the paper's figures of a still scene stand "
+      "beside the first, those of an animation beside the last",
+      Role::run, "fixed and fly");
   options.add("--samples", choice_value<std::uint32_t>(r.drawing.samples, {{"1", 1}, {"4", 4}}, "N"),
               "samples a pixel");
   options.add("--calibration", calibration_value(r.drawing.calibration),
@@ -223,6 +237,9 @@ int experiment_verb(std::span<const std::string> arguments) {
     auto found = find_experiments(r.names);
     if (!found) return forward_error(found);
     chosen = std::move(*found);
+    for (const std::string& path : r.camera_paths) {
+      if (auto known = check_camera_path(path); !known) return known;
+    }
     if (r.folder.empty())
       return fail(ErrorKind::usage, "--output", "missing (usage: sceneplay experiment NAME... -o DIR)");
     return {};

@@ -124,9 +124,15 @@ Result<int> run(const ReportRequest& r) {
     std::fprintf(stderr, "warning: %s\n", printable(warning).c_str());
   if (!r.quiet && r.output != "-") {
     std::size_t sections = 0;
-    for (const ReportRun& one : report->runs) sections += one.document.sections.size();
-    std::fprintf(stderr, "%s  %s  %s\n", printable(r.output).c_str(),
-                 counted(report->runs.size(), "run").c_str(), counted(sections, "section").c_str());
+    std::size_t failures = 0;
+    for (const ReportRun& one : report->runs) {
+      sections += one.document.sections.size();
+      failures += failure_count(one.document);
+    }
+    const std::string failed = failures == 0 ? "" : "  " + counted(failures, "case") + " failed";
+    std::fprintf(stderr, "%s  %s  %s%s\n", printable(r.output).c_str(),
+                 counted(report->runs.size(), "run").c_str(), counted(sections, "section").c_str(),
+                 failed.c_str());
   }
   return 0;
 }

@@ -25,7 +25,7 @@
 #include "render/calibration/calibration_file.h"
 #include "render/renderer.h"
 #include "scene/scene.h"
-#include "timeline/timeline.h"
+#include "tools/experiments/accuracy.h"
 #include "tools/output.h"
 
 using namespace scenegen;
@@ -33,9 +33,6 @@ using render::model::Method;
 using render::model::Prediction;
 
 namespace {
-
-constexpr std::array kMethods{Method::inline_frustum, Method::inline_queries, Method::octree,
-                              Method::queries_all};
 
 struct Request {
   std::string calibration, device, csv, dump;
@@ -52,20 +49,13 @@ struct Row {
   std::array<double, 2> measured_ms{}, predicted_ms{};  // one frame in flight, two
   double empty_ms = 0;                                  // T_0, one in flight
   [[nodiscard]] double deviation(std::size_t i) const {
-    return 100.0 * std::abs(predicted_ms[i] - measured_ms[i]) / measured_ms[i];
+    return tools::deviation_percent(predicted_ms[i], measured_ms[i]);
   }
 };
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return values[values.size() / 2];
-}
-
-render::View view_of(const Scene& scene, const timeline::Player& player, glm::uvec2 size) {
-  const float aspect = static_cast<float>(size.x) / static_cast<float>(size.y);
-  if (!scene.cameras.empty())
-    return render::view_of_camera(scene.cameras.front(), player.world_from_camera(CameraId(0)), aspect);
-  return render::frame_boxes(object_bounds(scene), aspect);
 }
 
 /// Stages of measured frames, ms.
@@ -145,42 +135,18 @@ struct Times {
   nlohmann::ordered_json dump;
 };
 
-/// Frames of the scene at the end of its time, one after the other and two in flight.
 Result<Times> measure(const Scene& scene, Method method, const render::RendererOptions& options,
                       const Request& request) {
-  timeline::Player player(timeline::compile(scene));
-  const auto end_s = static_cast<double>(scene.duration_s);
-  player.seek(end_s);
-  Result<render::Renderer> renderer = render::Renderer::create(scene, player, options);
-  if (!renderer) return forward_error(renderer);
-  const render::View view = view_of(scene, player, options.size);
-  render::FrameResult frame;
-  const auto submit = [&] { return renderer->submit(player.seek(end_s), player, view); };
-  std::vector<double> one_s;
-  std::vector<double> two_s;
   StageSamples one_stages, two_stages;
-  const tools::Stopwatch all;
-  // The first frames record what is kept and learn what is hidden.
-  constexpr int kWarm = 6;
-  for (int i = 0; i < kWarm + 3 || (all.seconds() < request.seconds && one_s.size() < 100); ++i) {
-    const tools::Stopwatch watch;
-    if (Result<void> done = submit(); !done) return forward_error(done);
-    if (Result<void> done = renderer->finish(frame); !done) return forward_error(done);
-    if (i < kWarm) continue;
-    one_s.push_back(watch.seconds() - frame.report.predict_ms * 1e-3);
-    one_stages.add(frame.report);
-  }
-  if (Result<void> done = submit(); !done) return forward_error(done);
-  for (std::size_t i = 0; i < std::max<std::size_t>(4, one_s.size()); ++i) {
-    const tools::Stopwatch watch;
-    if (Result<void> done = submit(); !done) return forward_error(done);
-    if (Result<void> done = renderer->finish(frame); !done) return forward_error(done);
-    if (i == 0) continue;
-    two_s.push_back(watch.seconds() - frame.report.predict_ms * 1e-3);
-    two_stages.add(frame.report);
-  }
-  if (Result<void> done = renderer->finish(frame); !done) return forward_error(done);
-  const render::FrameReport& r = frame.report;
+  tools::AccuracyRequest how;
+  how.seconds = request.seconds;
+  how.two_in_flight = true;
+  how.on_frame = [&](const render::FrameReport& report, bool two) {
+    (two ? two_stages : one_stages).add(report);
+  };
+  auto run = tools::measure_accuracy(scene, method, options, how);
+  if (!run) return forward_error(run);
+  const render::FrameReport& r = run->last;
   if (request.explain) {
     const Prediction& p = r.predicted[static_cast<std::size_t>(method)];
     std::fprintf(stderr,
@@ -194,8 +160,11 @@ Result<Times> measure(const Scene& scene, Method method, const render::RendererO
                  p.secondaries_s * 1e3, p.queries_cpu_s * 1e3, p.draw_device_s * 1e3, p.query_device_s * 1e3,
                  r.drawn, r.secondaries, r.queries, r.believed_hidden);
   }
-  const Prediction one = render::model::predict(method, r.facts, *options.costs, {.frames_in_flight = 1});
-  Times out{median(one_s), median(two_s), one.frame_s, r.predicted[static_cast<std::size_t>(method)], {}};
+  Times out{median(run->one_ms) * 1e-3,
+            median(run->two_ms) * 1e-3,
+            run->predicted_one_ms * 1e-3,
+            r.predicted[static_cast<std::size_t>(method)],
+            {}};
   if (request.dump.empty()) return out;
   out.dump["one"] = one_stages.medians();
   out.dump["two"] = two_stages.medians();
@@ -215,16 +184,14 @@ Result<void> one_set(const Request& request, const render::Calibration& calibrat
   const Scene& scene = made->scene;
   auto device = render::share_device({.wanted = request.device});
   if (!device) return forward_error(device);
-  for (const Method method : kMethods) {
+  for (const Method method : tools::kAccuracyMethods) {
     render::RendererOptions o;
     o.shared_device = *device;
     o.size = calibration.key.size;
     o.samples = calibration.key.samples;
     o.shadows = calibration.key.shadows;
-    o.strategy = std::string(name_of(method));
-    o.how.node_form = render::NodeForm::secondaries;
     o.costs = calibration.costs;
-    o.predictions = true;
+    o = tools::accuracy_options(o, method);
     const Result<Times> t = measure(scene, method, o, request);
     if (!t) {
       std::fprintf(stderr, "set %d, %s: %s\n", request.one, o.strategy.c_str(), t.error().str().c_str());
@@ -244,22 +211,6 @@ Result<void> one_set(const Request& request, const render::Calibration& calibrat
   return {};
 }
 
-struct Summary {
-  std::size_t count = 0;
-  double mean = 0, median = 0, p90 = 0, worst = 0;
-};
-Summary summary(std::vector<double> deviations) {
-  if (deviations.empty()) return {};
-  std::sort(deviations.begin(), deviations.end());
-  Summary s;
-  s.count = deviations.size();
-  for (const double d : deviations) s.mean += d / static_cast<double>(s.count);
-  s.median = deviations[s.count / 2];
-  s.p90 = deviations[std::min(s.count - 1, s.count * 9 / 10)];
-  s.worst = deviations.back();
-  return s;
-}
-
 void print_summaries(const std::vector<Row>& rows) {
   std::printf("\ndeviation, %%                          scenes x ways   mean  median    p90   worst\n");
   const auto line = [&](const char* name, const auto& wanted) {
@@ -268,7 +219,7 @@ void print_summaries(const std::vector<Row>& rows) {
       for (const Row& r : rows) {
         if (wanted(r)) deviations.push_back(r.deviation(flight));
       }
-      const Summary s = summary(deviations);
+      const tools::DeviationSummary s = tools::summarize_deviations(deviations);
       if (s.count > 0)
         std::printf("%-30s %u in flight  %5zu  %5.1f  %6.1f  %5.1f  %6.1f\n", name,
                     static_cast<unsigned>(flight + 1), s.count, s.mean, s.median, s.p90, s.worst);
@@ -278,7 +229,7 @@ void print_summaries(const std::vector<Row>& rows) {
   line("more than 384 objects", [](const Row& r) { return r.objects > 384; });
   line("at most 384 objects", [](const Row& r) { return r.objects <= 384; });
   line("frames of at least 5 T_0", [](const Row& r) { return r.measured_ms[0] >= 5 * r.empty_ms; });
-  for (const Method m : kMethods)
+  for (const Method m : tools::kAccuracyMethods)
     line(std::string(name_of(m)).c_str(), [&](const Row& r) { return r.method == name_of(m); });
   std::printf("the dissertation's, 1 - 48                     192   12.4    10.0   26.0    40.0\n");
 }

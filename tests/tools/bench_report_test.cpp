@@ -89,10 +89,57 @@ TEST_CASE("results of ours and of other renderers stand in one table") {
   CHECK(std::get<double>(value(stages, 1, "cull")) == 0.5);
   CHECK(std::holds_alternative<std::monostate>(value(stages, 2, "cull")));
   CHECK(std::get<double>(value(table(section, "bench-counters-1"), 1, "queries")) == 2);
-  CHECK_THAT(table(section, "bench-frame-2").note, Catch::Matchers::Contains("inline failed: lost"));
+  REQUIRE(section.failures.size() == 1);
+  CHECK(section.failures[0].what == "town.glb, walk: inline");
+  CHECK(section.failures[0].why == "lost");
   const auto charts = std::count_if(section.blocks.begin(), section.blocks.end(),
                                     [](const Block& b) { return std::holds_alternative<Chart>(b); });
   CHECK(charts == 2);  // all views; over time
+}
+
+TEST_CASE("scenes of one name are the same when nothing says otherwise") {
+  const auto titles = [](const std::vector<ordered_json>& all) {
+    std::vector<std::string> out;
+    const DocumentSection section = bench_section_of_all(all);
+    check_whole(section);
+    for (const Block& block : section.blocks) {
+      const auto* found = std::get_if<DocumentTable>(&block);
+      if (found != nullptr && found->id.find("-frame-") != std::string::npos)
+        out.push_back(found->title.substr(std::string("Frame time: ").size()) + " " +
+                      std::to_string(found->rows.size()));
+    }
+    return out;
+  };
+  const auto result = [](std::vector<std::pair<const char*, int>> scenes) {
+    ordered_json out{{"scenes", ordered_json::array()}, {"cases", ordered_json::array()}};
+    for (const auto& [file, bytes] : scenes) {
+      out["scenes"].push_back({{"file", file}, {"objects", 10}});
+      if (bytes > 0) out["scenes"].back()["bytes"] = bytes;
+      out["cases"].push_back(
+          {{"file", file}, {"camera", "p/orbit"}, {"strategy", "s"}, {"frameMs", {{"mean", 1}}}});
+    }
+    return out;
+  };
+  using Titles = std::vector<std::string>;
+  // From other folders, with nothing known or all equal.
+  CHECK(titles({result({{"a/t.glb", 0}}), result({{"b/t.glb", 7}})}) == Titles{"t.glb, orbit 2"});
+  CHECK(titles({result({{"a/t.glb", 7}}), result({{"b/t.glb", 7}})}) == Titles{"t.glb, orbit 2"});
+  // Another file at another place, or at the same.
+  CHECK(titles({result({{"a/t.glb", 7}}), result({{"b/t.glb", 8}})}) ==
+        Titles{"a/t.glb, orbit 1", "b/t.glb, orbit 1"});
+  CHECK(titles({result({{"t.glb", 7}}), result({{"t.glb", 8}})}) ==
+        Titles{"t.glb, 10 objects, 7 B, orbit 1", "t.glb, 10 objects, 8 B, orbit 1"});
+  // Two of a name in one result: then a name alone says nothing.
+  CHECK(titles(
+            {result({{"a/t.glb", 0}, {"b/t.glb", 0}}), result({{"b/t.glb", 0}}), result({{"c/t.glb", 0}})}) ==
+        Titles{"a/t.glb, orbit 1", "b/t.glb, orbit 2", "c/t.glb, orbit 1"});
+  CHECK(titles({result({{"a/t.glb", 7}, {"b/t.glb", 8}}), result({{"c/t.glb", 8}})}) ==
+        Titles{"a/t.glb, orbit 1", "b/t.glb, orbit 2"});
+  // Rows that nothing else tells apart say which results they are from.
+  const std::vector<ordered_json> twice{result({{"t.glb", 7}}), result({{"t.glb", 7}})};
+  const DocumentSection section = bench_section_of_all(twice);
+  CHECK(std::get<std::string>(value(table(section, "bench-frame-1"), 1, "strategy")) == "s, results 2");
+  CHECK(section.paragraphs.at(2).starts_with("Results 2: "));
 }
 
 TEST_CASE("results that are damaged give empty cells and no crash") {

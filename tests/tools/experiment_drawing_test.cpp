@@ -1,11 +1,15 @@
 // Experiments that draw: the device's culling, queries by number, the merged renderer.
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "render/spatial/frustum_cull.h"
 #include "scene/limits.h"
+#include "tests/tools/process.h"
 #include "timeline/timeline.h"
+#include "tools/experiments/accuracy.h"
+#include "tools/experiments/all.h"
 #include "tools/experiments/device_culling.h"
 #include "tools/experiments/flat_tree.h"
 #include "tools/experiments/invisible_objects.h"
@@ -16,6 +20,7 @@
 
 using namespace scenegen;
 using namespace scenegen::tools;
+using scenegen::test::TemporaryFolder;
 
 namespace {
 
@@ -155,4 +160,95 @@ TEST_CASE("the merged renderer shows what the renderer shows") {
     for (std::size_t i = 0; i < ours.size(); ++i) far_off += std::abs(ours[i] - result.rgba[i]) > 24 ? 1 : 0;
     CHECK(far_off < ours.size() / 200);
   }
+}
+
+TEST_CASE("accuracy: frames of one and of two in flight, with what was predicted of them") {
+  const ExperimentContext context = context_of(1);
+  const Scene scene = box_grid(6);
+  render::RendererOptions options;
+  options.shared_device = context.device;
+  options.size = {context.width, context.height};
+  options.samples = 1;
+  options.shadows = false;
+  for (const render::model::Method method : {kAccuracyMethods.front(), kAccuracyMethods.back()}) {
+    std::array<std::size_t, 2> told{};
+    AccuracyRequest request;
+    request.frames = 5;
+    request.seconds = 60;
+    request.two_in_flight = true;
+    request.on_frame = [&](const render::FrameReport& report, bool two) {
+      ++told.at(two ? 1 : 0);
+      CHECK(report.drawn > 0);
+    };
+    const auto run = measure_accuracy(scene, method, accuracy_options(options, method), request);
+    INFO((run ? "" : run.error().str()));
+    REQUIRE(run);
+    CHECK(run->one_ms.size() == 5);
+    CHECK(run->two_ms.size() == 4);
+    CHECK(told == std::array<std::size_t, 2>{5, 4});
+    CHECK(run->predicted_one_ms ==
+          Approx(1e3 * render::model::predict(method, run->last.facts,
+                                              render::model::rough_costs(context.device_info.type == "CPU"),
+                                              {.frames_in_flight = 1})
+                           .frame_s)
+              .epsilon(0.5));
+    CHECK(run->last.predicted[static_cast<std::size_t>(method)].frame_s > 0);
+  }
+}
+
+TEST_CASE("deviations are of what was measured") {
+  CHECK(deviation_percent(3, 2) == 50);
+  CHECK(deviation_percent(1, 2) == 50);
+  const DeviationSummary s = summarize_deviations({4, 1, 2, 3, 40, 5, 6, 7, 8, 9});
+  CHECK(s.count == 10);
+  CHECK(s.mean == 8.5);
+  CHECK(s.median == 5.5);
+  CHECK(s.p90 == 40);
+  CHECK(s.worst == 40);
+  CHECK(summarize_deviations({}).count == 0);
+}
+
+TEST_CASE("merged-batch looks from the paths that it is given") {
+  ExperimentContext context = context_of(1);
+  const TemporaryFolder folder;
+  context.folder = folder.path();
+  context.quick = true;
+  context.repeat = 1;
+  context.seed = 1;
+  const auto paths_of = [](const DocumentSection& section) {
+    std::vector<std::string> out;
+    for (const Block& block : section.blocks) {
+      const auto* table = std::get_if<DocumentTable>(&block);
+      if (table == nullptr) continue;
+      for (const auto& row : table->rows) {
+        std::string line = table->id;
+        out.push_back(line.append(" ").append(std::get<std::string>(row[1])));
+        // D's figures beside one path of each table.
+        const bool compared = std::any_of(row.begin(), row.end(), [&](const Cell& cell) {
+          const auto column = static_cast<std::size_t>(&cell - row.data());
+          return table->columns[column].origin == Origin::paper && std::holds_alternative<double>(cell);
+        });
+        out.back() += compared ? " compared" : "";
+      }
+    }
+    return out;
+  };
+  const auto usual = merged_batch(context);
+  INFO((usual ? "" : usual.error().str()));
+  REQUIRE(usual);
+  CHECK(paths_of(*usual) ==
+        std::vector<std::string>{"library-static fixed compared", "library-static fly",
+                                 "library-static fixed compared", "library-static fly",
+                                 "library-animation fixed", "library-animation fly compared",
+                                 "library-animation fixed", "library-animation fly compared"});
+  REQUIRE(usual->verdicts.size() == 4);
+  CHECK(usual->verdicts[0].source == "D table 33");
+  CHECK(usual->verdicts[3].source == "D table 34");
+  CHECK(usual->failures.empty());
+  context.camera_paths = {"orbit"};
+  const auto orbit = merged_batch(context);
+  REQUIRE(orbit);
+  CHECK(paths_of(*orbit) ==
+        std::vector<std::string>{"library-static orbit compared", "library-static orbit compared",
+                                 "library-animation orbit compared", "library-animation orbit compared"});
 }

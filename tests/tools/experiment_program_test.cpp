@@ -71,6 +71,12 @@ TEST_CASE("experiment: octree-or-bvh needs no device and gives the same counts a
   REQUIRE(first.sections.size() == 1);
   CHECK(first.sections[0].id == "octree-or-bvh");
   CHECK(first.sections[0].blocks.size() >= 4);
+  REQUIRE(first.sections[0].verdicts.size() == 5);
+  for (const Verdict& v : first.sections[0].verdicts) {
+    CHECK(v.source.starts_with("D 5.2"));
+    CHECK((!v.paper.empty() && !v.ours.empty() && !v.why.empty()));
+    CHECK_THAT(result.out, Catch::Matchers::Contains(v.source));
+  }
   CHECK_THAT(read_file(folder.file("a/b/index-visible.csv")),
              Catch::Matchers::StartsWith("scene,objects,index,"));
   CHECK(std::filesystem::exists(folder.file("a/b/references-by-height.csv")));
@@ -134,6 +140,10 @@ TEST_CASE("experiment: all of them, small, make one document", "[.all]") {
   REQUIRE(document.sections.size() == experiments().size());
   for (std::size_t i = 0; i < document.sections.size(); ++i) {
     CHECK(document.sections[i].id == experiments()[i].name);
+    CHECK_FALSE(document.sections[i].verdicts.empty());
+    CHECK(document.sections[i].failures.empty());
+    for (const Verdict& v : document.sections[i].verdicts)
+      CHECK((!v.paper.empty() && !v.ours.empty() && !v.why.empty()));
     for (const Block& block : document.sections[i].blocks) {
       if (const auto* table = std::get_if<DocumentTable>(&block)) {
         CHECK_FALSE(table->rows.empty());
@@ -159,6 +169,11 @@ TEST_CASE("experiment: what cannot run is said, and the rest goes on") {
   const auto json = nlohmann::ordered_json::parse(read_file(folder.file("a/experiment.json")));
   REQUIRE(json["failures"].size() == 1);
   CHECK(json["failures"][0]["experiment"] == "invisible-objects");
+  const auto report = play("report " + folder.file("a") + " -q -o " + folder.file("report.md"));
+  CHECK(report.code == 0);
+  CHECK_THAT(read_file(folder.file("report.md")), Catch::Matchers::Contains("1 case failed") &&
+                                                      Catch::Matchers::Contains("- invisible-objects: ") &&
+                                                      Catch::Matchers::Contains("nonesuch"));
   // When nothing can run there is nothing to go on with, and no file.
   const auto none = play("experiment recording --quick --device nonesuch -o " + folder.file("b"));
   CHECK(none.code == 2);
@@ -181,6 +196,7 @@ TEST_CASE("experiment: wrong calls") {
   check_error("experiment octree-or-bvh", 2, "--output");
   check_error("experiment --quick -o x", 2, "NAME");
   check_error("experiment octree-or-bvh -o x --repeat 0", 2, "--repeat");
+  check_error("experiment merged-batch -o x --camera-path flyy", 2, "did you mean 'fly'");
   check_error("experiment octree-or-bvh --quick -o " + folder.file("file"), 3, "file");
   check_error("experiment octree-or-bvh --quick -o /proc/nowhere", 3, "/proc/nowhere");
 }

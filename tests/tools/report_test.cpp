@@ -136,6 +136,85 @@ TEST_CASE("Markdown and CSV say what the page says") {
   CHECK(document_from_json(json["runs"][1], ""));
 }
 
+TEST_CASE("what failed is said with its reason, in every form and at the top") {
+  Document document = small();
+  document.failures = {{"recording", "device lost <&>"}};
+  document.sections[0].failures = {
+      {"a: octree", "too large"}, {"a: inline", "too large"}, {"b", "device lost <&>"}};
+  const RunReport all{"T", {{document, ""}, {small(), ""}}};
+  CHECK(failure_count(document) == 4);
+  const std::vector<FailureGroup> groups = failures_of(document);
+  REQUIRE(groups.size() == 2);
+  CHECK(groups[0].cases == std::vector<std::string>{"recording", "b"});
+  CHECK(FailureGroup{"", {"a", "b", "c", "d", "e"}}.cases_text(3) == "a; b; c and 2 more");
+  CHECK(FailureGroup{"", {"a", "b", "c", "d"}}.cases_text(3) == "a; b; c; d");
+  const std::string text = report_markdown(all, "");
+  const std::string glance = text.substr(0, text.find("## GPU"));
+  CHECK(glance.find("**4 cases failed**\n\n- recording; b: device lost &lt;&amp;\\>\n- a: octree; a: inline: "
+                    "too large\n") != std::string::npos);
+  Warnings warnings;
+  const std::string html = report_html(all, warnings);
+  CHECK(html.find("4 cases failed") < html.find("class=\"glance\""));
+  CHECK(html.find("<span class=\"case\">a: octree; a: inline</span>: too large") != std::string::npos);
+  CHECK(html.find("device lost &lt;&amp;&gt;") != std::string::npos);
+  const auto files = report_csv(all);
+  CHECK(files[1].first == "_failures.csv");
+  CHECK(files[1].second ==
+        "run,what,why\n1,recording,device lost <&>\n1,b,device lost <&>\n1,a: octree,too large\n1,a: "
+        "inline,too large\n");
+  const auto again = document_from_json(ordered_json::parse(report_json(all))["runs"][0], "");
+  REQUIRE(again);
+  CHECK(failure_count(*again) == 4);
+  CHECK(again->sections[0].failures[1].what == "a: inline");
+}
+
+TEST_CASE("the paper's tables stand at the top, a line each") {
+  Document document = small();
+  document.sections[0].verdicts = {
+      {"D table 6", "kept | <b>", "13.9 ms", "8.6 ms", Finding::better, "less is recorded"},
+      {"D 5.2", "building", "octree faster", "octree slower", Finding::differs, "sorted"}};
+  const RunReport all{"T", {{document, ""}}};
+  CHECK(finding_of(1, 2, Better::lower) == Finding::better);
+  CHECK(finding_of(1, 2, Better::higher) == Finding::worse);
+  CHECK(finding_of(1.01, 1, Better::lower) == Finding::level);
+  const std::string text = report_markdown(all, "");
+  CHECK(
+      text.find("| D table 6 | kept \\| &lt;b\\> | 13.9 ms | 8.6 ms | \u2713 better | less is recorded |\n") <
+      text.find("Figures of ours beside the paper's"));
+  CHECK(text.find("| \u2260 differs | sorted |\n") != std::string::npos);
+  Warnings warnings;
+  const std::string html = report_html(all, warnings);
+  CHECK(html.find("class=\"verdicts\"") < html.find("class=\"glance\""));
+  CHECK(html.find("kept | &lt;b&gt;") != std::string::npos);
+  CHECK(html.find("</span> not as the paper</span>") != std::string::npos);
+  const auto files = report_csv(all);
+  CHECK(files[1].first == "_glance.csv");
+  CHECK(files[1].second ==
+        "run,source,what,paper,ours,finding,why\n1,D table 6,kept | <b>,13.9 ms,8.6 ms,better,less is "
+        "recorded\n"
+        "1,D 5.2,building,octree faster,octree slower,differs,sorted\n");
+  const auto again = document_from_json(ordered_json::parse(report_json(all))["runs"][0], "");
+  REQUIRE(again);
+  REQUIRE(again->sections[0].verdicts.size() == 2);
+  CHECK(again->sections[0].verdicts[1].finding == Finding::differs);
+  CHECK(again->sections[0].verdicts[0].why == "less is recorded");
+}
+
+TEST_CASE("failures of experiments are in the report") {
+  const test::TemporaryFolder folder;
+  ordered_json json = ordered_json::parse(results(small()));
+  json["failures"] = {{{"experiment", "recording"}, {"error", "device 'X': lost"}}};
+  test::write_file(folder.file("r.json"), json.dump());
+  const test::ProcessResult page = report(folder, "r.json -o r.md");
+  CHECK(page.code == 0);
+  CHECK(page.err == "r.md  1 run  1 section  1 case failed\n");
+  CHECK(test::read_file(folder.file("r.md")).find("- recording: device 'X': lost\n") != std::string::npos);
+  json["failures"][0].erase("error");
+  test::write_file(folder.file("r.json"), json.dump());
+  CHECK(report(folder, "r.json -o x.md").err ==
+        "error: r.json: /failures/0: has no text experiment or no text error\n");
+}
+
 TEST_CASE("sceneplay report takes files and folders and writes every form") {
   const test::TemporaryFolder folder;
   std::filesystem::create_directories(folder.file("all/b"));

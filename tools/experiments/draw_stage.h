@@ -49,6 +49,8 @@ class DrawStage {
   [[nodiscard]] render::GpuScene& gpu() { return *gpu_; }
   [[nodiscard]] render::Target& target() { return target_; }
   [[nodiscard]] const render::View& view() const { return view_; }
+  /// Of the frames from now on.
+  void look(const render::View& view) { view_ = view; }
 
  private:
   DrawStage(const ExperimentContext& context, const Scene& scene, const render::View& view,

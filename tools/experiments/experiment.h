@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "render/renderer.h"
 #include "scene/result.h"
@@ -26,6 +27,8 @@ struct ExperimentContext {
   bool quick = false;                                ///< fewer sizes and frames: minutes on a software device
   std::optional<std::uint32_t> repeat;               ///< else what suits the experiment
   std::uint32_t width = 0, height = 0, samples = 1;  ///< of pictures
+  /// As --camera-path names them, for experiments that look from several; none: the experiment's own.
+  std::vector<std::string> camera_paths;
   Progress* progress = nullptr;
 };
 

@@ -6,10 +6,13 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
+#include <new>
 #include <numeric>
+#include <stdexcept>
 
 #include "render/image_file.h"
 #include "timeline/timeline.h"
+#include "tools/report/report.h"
 
 namespace scenegen::tools {
 
@@ -105,7 +108,8 @@ Spread WayRuns::frame_ms(std::size_t frame) const {
 
 Result<std::vector<WayRuns>> compare_ways(const ExperimentContext& context, const Scene& scene,
                                           const std::vector<Way>& ways, const Turns& turns) {
-  auto camera = CameraMan::of_scene(scene, "", {context.width, context.height});
+  auto camera = turns.camera ? Result<CameraMan>(*turns.camera)
+                             : CameraMan::of_scene(scene, "", {context.width, context.height});
   if (!camera) return forward_error(camera);
   const std::shared_ptr<const timeline::Timeline> timeline = timeline::compile(scene);
   std::vector<WayRuns> out;
@@ -159,6 +163,41 @@ Result<Picture> take_picture(const ExperimentContext& context, const Scene& scen
                                   render::encode_picture(render::PictureFormat::png, size, frame.rgba));
   if (!written) return tl::unexpected<Error>(written.error());
   return Picture{"picture-" + id, title, file, {}};
+}
+
+Result<void> attempt(const std::function<Result<void>()>& work) {
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorKind::no_device, "memory", "is too little");
+  } catch (const std::runtime_error& error) {
+    return fail(ErrorKind::no_device, "device", error.what());
+  }
+}
+
+std::string with_unit(double value, const std::string& unit) {
+  const bool close = unit == "\u00D7" || unit.empty();
+  return figure_text(value) + (close ? "" : " ") + unit;
+}
+
+Verdict judged(Verdict verdict, double ours, double paper, const std::string& unit, Better better) {
+  verdict.ours = with_unit(ours, unit);
+  verdict.paper = with_unit(paper, unit);
+  verdict.finding = finding_of(ours, paper, better);
+  return verdict;
+}
+
+Verdict judged(Verdict verdict, bool agrees) {
+  verdict.finding = agrees ? Finding::agrees : Finding::differs;
+  return verdict;
+}
+
+std::string on_device(const ExperimentContext& context, const std::string& why) {
+  return context.device_info.type == "CPU" ? "the processor draws here, not a GPU; " + why : why;
+}
+
+std::string sized(const ExperimentContext& context, std::string what) {
+  return context.quick ? what + " (small scenes)" : what;
 }
 
 void begin_step(const ExperimentContext& context, const std::string& what) {

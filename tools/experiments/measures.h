@@ -65,9 +65,9 @@ struct Turns {
   std::uint32_t warm_up = 6;
   std::uint32_t repeat = 3;
   std::uint32_t frames_in_flight = 2;
+  std::optional<CameraMan> camera = {};  ///< else the scene's first
 };
-/// Every way over all moments, `repeat` times, another one first each time; seen from the scene's first
-/// camera.
+/// Every way over all moments, `repeat` times, another one first each time.
 [[nodiscard]] Result<std::vector<WayRuns>> compare_ways(const ExperimentContext& context, const Scene& scene,
                                                         const std::vector<Way>& ways, const Turns& turns);
 /// Evenly from `from` to `to`, both included.
@@ -76,6 +76,22 @@ struct Turns {
 /// Draws the scene at a time as a PNG into the context's folder.
 [[nodiscard]] Result<Picture> take_picture(const ExperimentContext& context, const Scene& scene,
                                            double time_s, const std::string& id, const std::string& title);
+
+/// `work`, with what it throws as an error: too little memory, a limit of the device. A case that fails so is
+/// one that failed; the rest of its experiment goes on.
+[[nodiscard]] Result<void> attempt(const std::function<Result<void>()>& work);
+
+/// `verdict` (source, what and why) with both figures and how they stand.
+[[nodiscard]] Verdict judged(Verdict verdict, double ours, double paper, const std::string& unit,
+                             Better better);
+/// `verdict` (source, what, paper, ours and why): whether what the paper says in words is so here.
+[[nodiscard]] Verdict judged(Verdict verdict, bool agrees);
+/// "12.9 ms", "1.8×", for sentences.
+[[nodiscard]] std::string with_unit(double value, const std::string& unit);
+/// A reason of device times: that no GPU draws here, where none does.
+[[nodiscard]] std::string on_device(const ExperimentContext& context, const std::string& why);
+/// What a verdict compares, with " (small scenes)" when --quick made them so.
+[[nodiscard]] std::string sized(const ExperimentContext& context, std::string what);
 
 /// A step of an experiment's progress line begins.
 void begin_step(const ExperimentContext& context, const std::string& what);

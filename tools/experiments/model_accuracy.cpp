@@ -2,85 +2,46 @@
 // drawing.
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "gen/generate.h"
-#include "timeline/timeline.h"
+#include "tools/experiments/accuracy.h"
 #include "tools/experiments/all.h"
 #include "tools/experiments/measures.h"
 #include "tools/experiments/paper.h"
+#include "tools/report/report.h"
 
 namespace scenegen::tools {
 namespace {
 
-using render::model::Method;
+/// Names of kAccuracyMethods in model_accuracy.csv.
+constexpr std::array kPaperNames{"inline_frustum", "inline_frustum_query_each_object", "octree_cached",
+                                 "octree_cached_query_nodes"};
+constexpr std::size_t kWays = kAccuracyMethods.size();
+static_assert(kPaperNames.size() == kWays);
 
-struct ModelWay {
-  Method method;
-  const char* paper;  ///< its name in model_accuracy.csv
-};
-constexpr std::array kWays{ModelWay{Method::inline_frustum, "inline_frustum"},
-                           ModelWay{Method::inline_queries, "inline_frustum_query_each_object"},
-                           ModelWay{Method::octree, "octree_cached"},
-                           ModelWay{Method::queries_all, "octree_cached_query_nodes"}};
+std::string way_name(std::size_t way) {
+  return std::string(name_of(kAccuracyMethods[way]));
+}
 
 struct Case {
   Spread measured_ms;
   double predicted_ms = 0;
-  [[nodiscard]] double deviation() const {
-    return 100.0 * std::abs(predicted_ms - measured_ms.median) / measured_ms.median;
-  }
+  [[nodiscard]] double deviation() const { return deviation_percent(predicted_ms, measured_ms.median); }
 };
 
-/// Frames of the scene at the end of its time, one after the other. The first ones record what is kept and
-/// learn what is hidden.
-Result<Case> measure(const ExperimentContext& context, const Scene& scene,
-                     const std::shared_ptr<const timeline::Timeline>& timeline, Method method) {
-  const std::size_t frames = context.quick ? 5 : 20;
-  constexpr std::size_t kWarm = 6;
-  auto camera = CameraMan::of_scene(scene, "", {context.width, context.height});
-  if (!camera) return forward_error(camera);
-  timeline::Player player(timeline);
-  const auto end_s = static_cast<double>(scene.duration_s);
-  player.seek(end_s);
-  render::RendererOptions o = drawing(context);
-  o.strategy = std::string(name_of(method));
-  o.how.node_form = render::NodeForm::secondaries;  // as in the dissertation
+Result<Case> measure(const ExperimentContext& context, const Scene& scene, render::model::Method method) {
+  render::RendererOptions o = accuracy_options(drawing(context), method);
   o.frames_in_flight = 1;
-  o.predictions = true;  // made while the device works
-  auto renderer = render::Renderer::create(scene, player, o);
-  if (!renderer) return forward_error(renderer);
-  const render::View view = camera->view(player);
-  render::FrameResult frame;
-  std::vector<double> times_ms;
-  std::vector<double> predicted_ms;
-  const Stopwatch all;
-  constexpr double kPatienceS = 1.0;
-  for (std::size_t i = 0; i < kWarm + 3 || (times_ms.size() < frames && all.seconds() < kPatienceS); ++i) {
-    const Stopwatch watch;
-    if (auto done = renderer->submit(player.seek(end_s), player, view); !done) return forward_error(done);
-    if (auto done = renderer->finish(frame); !done) return forward_error(done);
-    if (i < kWarm) continue;
-    times_ms.push_back(watch.seconds() * 1e3);
-    predicted_ms.push_back(frame.report.predicted[static_cast<std::size_t>(method)].frame_s * 1e3);
-  }
-  return Case{spread_of(times_ms), spread_of(predicted_ms).median};
+  auto run = measure_accuracy(scene, method, o, {.frames = context.quick ? 5U : 20U});
+  if (!run) return forward_error(run);
+  return Case{spread_of(run->one_ms), run->predicted_one_ms};
 }
 
 struct Deviations {
   std::vector<double> ours, paper;
 };
 
-struct Summary4 {
-  double mean = 0, median = 0, p90 = 0, worst = 0;
-};
-Summary4 summary_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return {mean_of(values), spread_of(values).median,
-          values[std::min(values.size() - 1, values.size() * 9 / 10)], values.back()};
-}
-
-DocumentTable summary_table(const std::array<Deviations, kWays.size()>& by_way) {
+DocumentTable summary_table(const std::array<Deviations, kWays>& by_way) {
   DocumentTable table{
       "accuracy-summary",
       "Deviation of predictions, %",
@@ -99,13 +60,13 @@ DocumentTable summary_table(const std::array<Deviations, kWays.size()>& by_way) 
   Deviations all;
   const auto add = [&](const std::string& name, const Deviations& d) {
     if (d.ours.empty() || d.paper.empty()) return;
-    const Summary4 ours = summary_of(d.ours);
-    const Summary4 paper = summary_of(d.paper);
+    const DeviationSummary ours = summarize_deviations(d.ours);
+    const DeviationSummary paper = summarize_deviations(d.paper);
     table.rows.push_back({name, static_cast<double>(d.ours.size()), ours.mean, paper.mean, ours.median,
                           paper.median, ours.p90, paper.p90, ours.worst, paper.worst});
   };
-  for (std::size_t w = 0; w < kWays.size(); ++w) {
-    add(std::string(name_of(kWays[w].method)), by_way[w]);
+  for (std::size_t w = 0; w < kWays; ++w) {
+    add(way_name(w), by_way[w]);
     all.ours.insert(all.ours.end(), by_way[w].ours.begin(), by_way[w].ours.end());
     all.paper.insert(all.paper.end(), by_way[w].paper.begin(), by_way[w].paper.end());
   }
@@ -114,7 +75,7 @@ DocumentTable summary_table(const std::array<Deviations, kWays.size()>& by_way) 
 }
 
 /// Deviations in order: how large that of a share of the cases is at most.
-Chart distribution(const std::array<Deviations, kWays.size()>& by_way) {
+Chart distribution(const std::array<Deviations, kWays>& by_way) {
   Chart chart{"accuracy-distribution",
               "Deviation that so many cases stay below",
               "share of cases, %",
@@ -144,21 +105,47 @@ std::vector<int> sets_of(const ExperimentContext& context) {
   return out;
 }
 
-void add_case(const Result<Case>& found, const PaperTable& paper, const PaperTable::Where& row,
+void add_case(const Case& found, const PaperTable& paper, const PaperTable::Where& row,
               std::vector<Cell> first_cells, DocumentTable& table, Deviations& deviations) {
   std::vector<Cell>& cells = first_cells;
-  if (found) {
-    cells.insert(cells.end(), {found->measured_ms.median, found->predicted_ms,
-                               spread_cell({found->measured_ms}), found->deviation()});
-    deviations.ours.push_back(found->deviation());
-  } else {
-    cells.insert(cells.end(), {found.error().str(), Cell(), Cell(), Cell()});
-  }
+  cells.insert(cells.end(), {found.measured_ms.median, found.predicted_ms, spread_cell({found.measured_ms}),
+                             found.deviation()});
+  deviations.ours.push_back(found.deviation());
   const auto theirs = paper.number(row, "deviation_percent");
-  if (found && theirs) deviations.paper.push_back(*theirs);
+  if (theirs) deviations.paper.push_back(*theirs);
   cells.insert(cells.end(),
                {paper.cell(row, "measured_ms"), paper.cell(row, "predicted_ms"), known(theirs.value_or(-1))});
   table.rows.push_back(std::move(cells));
+}
+
+/// `all`: the last row of summary_table().
+std::vector<Verdict> verdicts_of(const ExperimentContext& context, const DocumentTable& summary,
+                                 const DocumentTable& by_set) {
+  const auto number = [](const std::vector<Cell>& row, std::size_t column) {
+    return std::get<double>(row[column]);
+  };
+  const std::vector<Cell>& all = summary.rows.back();
+  const auto worst_way =
+      std::max_element(summary.rows.begin(), std::prev(summary.rows.end()),
+                       [&](const auto& a, const auto& b) { return number(a, 2) < number(b, 2); });
+  const auto worst =
+      std::max_element(by_set.rows.begin(), by_set.rows.end(),
+                       [&](const auto& a, const auto& b) { return number(a, 7) < number(b, 7); });
+  const std::string sets = context.quick ? "six of the 44 sets" : "44 sets";
+  const std::string guessed = context.costs ? "" : "unit costs are guesses, as nothing was calibrated; ";
+  return {judged({"D tables 7-30", "deviation of predictions, mean of " + sets + " in 4 ways", "", "",
+                  Finding::level,
+                  guessed + "largest for " + std::get<std::string>((*worst_way)[0]) + " (" +
+                      with_unit(number(*worst_way, 2), "%") + ")"},
+                 number(all, 2), number(all, 3), "%", Better::lower),
+          judged({"D tables 7-30", "deviation of predictions, median", "", "", Finding::level,
+                  guessed + "half of the predictions are nearer than this"},
+                 number(all, 4), number(all, 5), "%", Better::lower),
+          judged({"D tables 7-30", "deviation of predictions, worst", "", "", Finding::level,
+                  "set " + figure_text(number(*worst, 1)) + " by " + std::get<std::string>((*worst)[0]) +
+                      ", a frame of " + with_unit(number(*worst, 4), "ms") + " predicted as " +
+                      with_unit(number(*worst, 5), "ms")},
+                 number(all, 8), number(all, 9), "%", Better::lower)};
 }
 
 }  // namespace
@@ -181,27 +168,31 @@ Result<DocumentSection> model_accuracy(const ExperimentContext& context) {
                        {"deviationPaper", "deviation", "%", Origin::paper, Better::lower}},
                       {},
                       {}};
-  std::array<Deviations, kWays.size()> by_way;
+  std::array<Deviations, kWays> by_way;
+  std::vector<Failure> failures;
   for (const int set : sets_of(context)) {
     begin_step(context, "model-accuracy: set " + std::to_string(set));
     auto made = gen::generate_test_set(set, context.seed);
     if (!made) return forward_error(made);
-    const auto timeline = timeline::compile(made->scene);
     const PaperTable::Where size{{"set", std::to_string(set)}};
     const double objects = *sizes.number(size, "objects");
     const double vertices = *sizes.number(size, "vertices");
-    for (std::size_t w = 0; w < kWays.size(); ++w) {
+    for (std::size_t w = 0; w < kWays; ++w) {
       const PaperTable::Where row{
-          {"method", kWays[w].paper}, {"objects", shortest(objects)}, {"vertices", shortest(vertices)}};
-      add_case(measure(context, made->scene, timeline, kWays[w].method), paper, row,
-               {std::string(name_of(kWays[w].method)), static_cast<double>(set), objects, vertices}, table,
-               by_way[w]);
+          {"method", kPaperNames[w]}, {"objects", shortest(objects)}, {"vertices", shortest(vertices)}};
+      const std::string name = way_name(w);
+      const Result<Case> found = measure(context, made->scene, kAccuracyMethods[w]);
+      if (!found) {
+        failures.push_back({"model-accuracy, set " + std::to_string(set) + ": " + name, found.error().str()});
+        continue;
+      }
+      add_case(*found, paper, row, {name, static_cast<double>(set), objects, vertices}, table, by_way[w]);
     }
   }
   DocumentTable summary = summary_table(by_way);
   if (summary.rows.empty())
     return fail(ErrorKind::no_device, "device '" + context.device_info.name + "'",
-                "no set could be drawn; the first: " + std::get<std::string>(table.rows.front()[4]));
+                "no set could be drawn" + (failures.empty() ? "" : "; the first: " + failures.front().why));
   table.note = std::string("D tables 7 to 30. Unit costs ") +
                (context.costs ? "come from a calibration of this device, whose scenes are none of these"
                               : "are rough guesses, as nothing was calibrated: the deviation says little") +
@@ -215,9 +206,11 @@ Result<DocumentSection> model_accuracy(const ExperimentContext& context) {
                            " % in the mean (the dissertation's for the same sets and ways: " + words(3) +
                            " %), " + words(4) + " % in the median (" + words(5) + " %), " + words(8) +
                            " % at worst (" + words(9) + " %).");
+  out.verdicts = verdicts_of(context, summary, table);
   out.blocks.emplace_back(std::move(summary));
   out.blocks.emplace_back(distribution(by_way));
   out.blocks.emplace_back(std::move(table));
+  out.failures = std::move(failures);
   return out;
 }
 

@@ -460,6 +460,41 @@ void add_references(const ExperimentContext& context, const NamedScene& named, R
   out.charts.push_back(std::move(chart));
 }
 
+/// D 5.2 has charts without figures: what it says of them.
+std::vector<Verdict> verdicts_of(const Sums& sums, const UpdateSums& updates, double worst_references) {
+  const auto times = [](double ratio) {
+    return ratio >= 1 ? with_unit(ratio, "\u00D7") + " slower" : with_unit(1 / ratio, "\u00D7") + " faster";
+  };
+  const double shown = sums.octree_shown / sums.best_bvh_shown;
+  const double by_sah = sums.octree_ms / sums.sah_ms;
+  const double by_lbvh = sums.octree_ms / sums.lbvh_ms;
+  const double updating = std::max(updates.octree_ms / updates.sah_ms, updates.octree_ms / updates.lbvh_ms);
+  return {
+      judged(
+          {"D 5.2, objects shown", "octree against the better hierarchy of boxes", "hierarchies show fewest",
+           "octree shows " + with_unit(shown, "\u00D7") + " as many", Finding::level,
+           "boxes of a hierarchy lie tight round what they hold, cells of an octree do not"},
+          shown >= 1),
+      judged({"D 5.2, building", "octree against BVH-SAH", "octree several times faster",
+              "octree " + times(by_sah), Finding::level,
+              "SAH looks for the best split at every node, an octree splits in the middle"},
+             by_sah < 1),
+      judged(
+          {"D 5.2, building", "octree against Morton LBVH", "octree several times faster",
+           "octree " + times(by_lbvh), Finding::level,
+           "an LBVH sorts all codes at once; the octree takes object by object, which is what lets it follow "
+           "changes"},
+          by_lbvh < 1),
+      judged({"D 5.2, updates", "octree against building a hierarchy anew", "octree faster",
+              "octree " + times(updating), Finding::level,
+              "a change touches a few nodes of the octree; building anew costs all objects"},
+             updating < 1),
+      judged({"D 5.2, references", "commands with many references to an object", "draws objects many times",
+              "up to " + with_unit(worst_references, "\u00D7") + " the commands", Finding::level,
+              "an object is drawn for every cell that it touches"},
+             worst_references > 1)};
+}
+
 }  // namespace
 
 Result<DocumentSection> octree_or_bvh(const ExperimentContext& context) {
@@ -521,6 +556,7 @@ Result<DocumentSection> octree_or_bvh(const ExperimentContext& context) {
   out.blocks.emplace_back(std::move(*updated));
   out.blocks.emplace_back(std::move(references.table));
   for (Chart& chart : references.charts) out.blocks.emplace_back(std::move(chart));
+  out.verdicts = verdicts_of(sums, updates, references.worst);
   return out;
 }
 

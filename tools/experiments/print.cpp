@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "tools/experiments/run.h"
+#include "tools/report/report.h"
 
 namespace scenegen::tools {
 namespace {
@@ -81,6 +82,17 @@ std::string table_text(const DocumentTable& table) {
   return out;
 }
 
+/// Where ours stand beside the paper, without the reasons, for which a terminal is too narrow.
+std::string verdicts_text(const DocumentSection& section) {
+  if (section.verdicts.empty()) return {};
+  DocumentTable table{
+      "", "", {{"", "", ""}, {"", "table", ""}, {"", "what", ""}, {"", "ours", ""}, {"", "paper", ""}}, {}};
+  for (const Verdict& v : section.verdicts)
+    table.rows.push_back({std::string(sign_of(v.finding)) + " " + std::string(word_of(v.finding)), v.source,
+                          v.what, v.ours, v.paper});
+  return "\nBeside the paper\n\n" + table_text(table);
+}
+
 std::string section_text(const DocumentSection& section) {
   std::string out = section.title + "\n" + std::string(display_width(section.title), '=') + "\n";
   const auto paragraph = [&](const std::string& text) {
@@ -88,6 +100,8 @@ std::string section_text(const DocumentSection& section) {
     for (const std::string& line : wrap(text, 100)) out += line + "\n";
   };
   for (const std::string& text : section.paragraphs) paragraph(text);
+  out += verdicts_text(section);
+  for (const Failure& f : section.failures) paragraph("Failed: " + f.what + ": " + f.why);
   for (const Block& block : section.blocks) {
     const auto* table = std::get_if<DocumentTable>(&block);
     if (table == nullptr) continue;

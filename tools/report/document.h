@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -68,11 +69,31 @@ struct Picture {
 
 using Block = std::variant<DocumentTable, Chart, Picture>;
 
+/// What was to be measured and could not be.
+struct Failure {
+  std::string what;  ///< the case: "town.glb, orbit: octree"
+  std::string why;
+};
+
+/// What came out beside the paper: of figures how ours stand, of what it says in words whether it is so here.
+enum class Finding : std::uint8_t { better, level, worse, agrees, differs };
+
+/// A table or a claim of the paper's beside what was found, in one line: what a reader sees first.
+struct Verdict {
+  std::string source;       ///< "D table 32"
+  std::string what;         ///< what is compared: "gain of adaptive at C = 1"
+  std::string paper, ours;  ///< figures with their units, or words
+  Finding finding = Finding::level;
+  std::string why;  ///< the reason, from what was measured where that can be
+};
+
 struct DocumentSection {
   std::string id;
   std::string title;
   std::vector<std::string> paragraphs;  ///< plain text; the first says in one sentence what came out
   std::vector<Block> blocks;
+  std::vector<Failure> failures = {};  ///< of its cases
+  std::vector<Verdict> verdicts = {};
 };
 
 struct Document {
@@ -80,10 +101,15 @@ struct Document {
   std::vector<std::pair<std::string, std::string>>
       facts;  ///< machine, device, driver, versions, seed, arguments
   std::vector<DocumentSection> sections;
+  std::vector<Failure> failures = {};  ///< of what would have been sections
 };
 
+/// "better", "level", "worse", "agrees", "differs".
+[[nodiscard]] std::string_view word_of(Finding finding);
+
 /// {"title", "facts", "sections": [{"id", "title", "paragraphs", "blocks": [{"kind":
-/// "table"|"chart"|"picture", …}]}]}
+/// "table"|"chart"|"picture", …}], "failures", "verdicts": [{"source", "what", "paper", "ours", "finding",
+/// "why"}]}], "failures": [{"what", "why"}]}; failures and verdicts only where there are some.
 [[nodiscard]] nlohmann::ordered_json document_json(const Document& document);
 /// The error's `where` is a JSON pointer below `pointer`.
 [[nodiscard]] Result<Document> document_from_json(const nlohmann::ordered_json& json,

@@ -22,6 +22,8 @@ constexpr std::size_t kMostFacts = 1'000;
 constexpr std::size_t kMostSections = 1'000;
 constexpr std::size_t kMostParagraphs = 1'000;
 constexpr std::size_t kMostBlocks = 1'000;
+constexpr std::size_t kMostFailures = 100'000;
+constexpr std::size_t kMostVerdicts = 1'000;
 constexpr std::size_t kMostPictures = 100;  // each up to some 0.5 MB of the page
 constexpr std::size_t kMostColumns = 256;
 constexpr std::size_t kMostRows = 100'000;
@@ -31,6 +33,7 @@ constexpr int kMostDigits = 17;
 
 constexpr std::array<std::string_view, 2> kOrigins{"ours", "paper"};
 constexpr std::array<std::string_view, 3> kBetter{"none", "lower", "higher"};
+constexpr std::array<std::string_view, 5> kFindings{"better", "level", "worse", "agrees", "differs"};
 constexpr std::array<std::string_view, 3> kKinds{"table", "chart", "picture"};
 
 // ---- Writing ---------------------------------------------------------------------------------------------
@@ -97,6 +100,25 @@ ordered_json block_json(const Picture& picture) {
           {"title", picture.title},
           {"file", picture.file},
           {"note", picture.note}};
+}
+
+ordered_json failures_json(const std::vector<Failure>& failures) {
+  ordered_json out = ordered_json::array();
+  for (const Failure& f : failures) out.push_back({{"what", f.what}, {"why", f.why}});
+  return out;
+}
+
+ordered_json verdicts_json(const std::vector<Verdict>& verdicts) {
+  ordered_json out = ordered_json::array();
+  for (const Verdict& v : verdicts) {
+    out.push_back({{"source", v.source},
+                   {"what", v.what},
+                   {"paper", v.paper},
+                   {"ours", v.ours},
+                   {"finding", word_of(v.finding)},
+                   {"why", v.why}});
+  }
+  return out;
 }
 
 // ---- Reading ---------------------------------------------------------------------------------------------
@@ -363,6 +385,36 @@ Block read_block(const Reader& in, Ids& ids) {
   return kKinds[kind] == "chart" ? named(read_chart(in)) : named(read_picture(in));
 }
 
+void read_failures(const Reader& in, std::vector<Failure>& out) {
+  in.member(
+      "failures",
+      [&](const Reader& failures) {
+        failures.elements(kMostFailures, [&](const Reader& one) {
+          Failure& failure = out.emplace_back();
+          one.text("what", failure.what, kMostName);
+          one.text("why", failure.why, kMostText);
+        });
+      },
+      true);
+}
+
+void read_verdicts(const Reader& in, std::vector<Verdict>& out) {
+  in.member(
+      "verdicts",
+      [&](const Reader& verdicts) {
+        verdicts.elements(kMostVerdicts, [&](const Reader& one) {
+          Verdict& verdict = out.emplace_back();
+          one.text("source", verdict.source, kMostName);
+          one.text("what", verdict.what, kMostName);
+          one.text("paper", verdict.paper, kMostName);
+          one.text("ours", verdict.ours, kMostName);
+          one.word("finding", verdict.finding, kFindings);
+          one.text("why", verdict.why, kMostText);
+        });
+      },
+      true);
+}
+
 DocumentSection read_section(const Reader& in, Ids& ids) {
   DocumentSection out;
   in.id(out.id, ids.sections);
@@ -374,10 +426,16 @@ DocumentSection read_section(const Reader& in, Ids& ids) {
   in.member("blocks", [&](const Reader& blocks) {
     blocks.elements(kMostBlocks, [&](const Reader& b) { out.blocks.push_back(read_block(b, ids)); });
   });
+  read_failures(in, out.failures);
+  read_verdicts(in, out.verdicts);
   return out;
 }
 
 }  // namespace
+
+std::string_view word_of(Finding finding) {
+  return kFindings[static_cast<std::size_t>(finding)];
+}
 
 ordered_json document_json(const Document& document) {
   ordered_json facts = ordered_json::array();
@@ -391,8 +449,12 @@ ordered_json document_json(const Document& document) {
                         {"title", section.title},
                         {"paragraphs", section.paragraphs},
                         {"blocks", std::move(blocks)}});
+    if (!section.verdicts.empty()) sections.back()["verdicts"] = verdicts_json(section.verdicts);
+    if (!section.failures.empty()) sections.back()["failures"] = failures_json(section.failures);
   }
-  return {{"title", document.title}, {"facts", std::move(facts)}, {"sections", std::move(sections)}};
+  ordered_json out{{"title", document.title}, {"facts", std::move(facts)}, {"sections", std::move(sections)}};
+  if (!document.failures.empty()) out["failures"] = failures_json(document.failures);
+  return out;
 }
 
 Result<Document> document_from_json(const ordered_json& json, const std::string& pointer) {
@@ -411,6 +473,7 @@ Result<Document> document_from_json(const ordered_json& json, const std::string&
   in.member("sections", [&](const Reader& sections) {
     sections.elements(kMostSections, [&](const Reader& s) { out.sections.push_back(read_section(s, ids)); });
   });
+  read_failures(in, out.failures);
   if (found) return tl::unexpected<Error>(std::move(*found));
   return out;
 }

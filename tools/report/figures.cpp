@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <span>
 
 #include "tools/report/report.h"
 #include "tools/text.h"
@@ -148,6 +149,43 @@ Tally tally(const DocumentSection& section) {
       }
     }
   }
+  return out;
+}
+
+Finding finding_of(double ours, double paper, Better better) {
+  if (std::abs(ours - paper) <= kLevel * std::abs(paper)) return Finding::level;
+  return (ours < paper) == (better == Better::lower) ? Finding::better : Finding::worse;
+}
+
+std::string_view sign_of(Finding finding) {
+  constexpr std::array<std::string_view, 5> kSigns{"\u2713", "\u2248", "\u2717", "=", "\u2260"};
+  return kSigns[static_cast<std::size_t>(finding)];
+}
+
+std::string FailureGroup::cases_text(std::size_t most) const {
+  // A rest of one is named too: it takes no more room.
+  const std::size_t named = cases.size() <= most + 1 ? cases.size() : most;
+  std::string out = join(std::span(cases).first(named), "; ");
+  return named == cases.size() ? out : out + " and " + human_count(cases.size() - named) + " more";
+}
+
+std::vector<FailureGroup> failures_of(const Document& document) {
+  std::vector<FailureGroup> out;
+  const auto add = [&out](const std::vector<Failure>& failures) {
+    for (const Failure& f : failures) {
+      auto group = std::find_if(out.begin(), out.end(), [&](const auto& g) { return g.why == f.why; });
+      if (group == out.end()) group = out.insert(out.end(), FailureGroup{f.why, {}});
+      group->cases.push_back(f.what);
+    }
+  };
+  add(document.failures);
+  for (const DocumentSection& section : document.sections) add(section.failures);
+  return out;
+}
+
+std::size_t failure_count(const Document& document) {
+  std::size_t out = document.failures.size();
+  for (const DocumentSection& section : document.sections) out += section.failures.size();
   return out;
 }
 

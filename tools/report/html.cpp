@@ -132,6 +132,47 @@ std::string glance_html(const DocumentSection& section, std::size_t run, const T
   return out + "</div></div>\n";
 }
 
+std::string finding_html(Finding finding) {
+  constexpr std::array<std::string_view, 5> kWords{"better", "level", "worse", "as the paper",
+                                                   "not as the paper"};
+  constexpr std::array<std::string_view, 5> kLooks{"better", "level", "worse", "better", "worse"};
+  const auto at = static_cast<std::size_t>(finding);
+  return "<span class=\"" + std::string(kLooks[at]) + "\"><span aria-hidden=\"true\">" +
+         std::string(sign_of(finding)) + "</span> " + std::string(kWords[at]) + "</span>";
+}
+
+/// The paper's tables and claims, a line each.
+std::string verdicts_html(const ReportRun& run) {
+  std::string rows;
+  for (const DocumentSection& section : run.document.sections) {
+    for (const Verdict& v : section.verdicts) {
+      rows += "<tr><th scope=\"row\">" + escaped(v.source) + "</th><td>" + escaped(v.what) +
+              "</td><td class=\"paper\"><span class=\"key\">paper </span>" + escaped(v.paper) +
+              "</td><td class=\"ours\"><span class=\"key\">ours </span>" + escaped(v.ours) +
+              "</td><td class=\"s\">" + finding_html(v.finding) + "</td><td>" + escaped(v.why) +
+              "</td></tr>\n";
+    }
+  }
+  if (rows.empty()) return {};
+  return "<table class=\"verdicts\">\n<thead><tr><th scope=\"col\">paper\u2019s table</th><th "
+         "scope=\"col\">what</th><th scope=\"col\" class=\"paper\">paper</th><th scope=\"col\">ours</th><th "
+         "scope=\"col\">ours is</th><th scope=\"col\">why</th></tr></thead>\n<tbody>\n" +
+         rows + "</tbody></table>\n";
+}
+
+/// What failed and why, one line a reason. `most`: cases named of each.
+std::string failures_html(const Document& document, std::size_t most) {
+  const std::size_t count = failure_count(document);
+  if (count == 0) return {};
+  std::string out =
+      "<div class=\"failures\"><p><strong>" + counted(count, "case") + " failed</strong></p>\n<ul>\n";
+  for (const FailureGroup& group : failures_of(document)) {
+    out += "<li><span class=\"case\">" + escaped(group.cases_text(most)) + "</span>: " + escaped(group.why) +
+           "</li>\n";
+  }
+  return out + "</ul></div>\n";
+}
+
 std::string summary_html(const RunReport& report) {
   std::vector<Tally> runs(report.runs.size());
   std::vector<Tally> sections;
@@ -152,6 +193,7 @@ std::string summary_html(const RunReport& report) {
     } else if (report.runs.size() > 1) {
       out += "<p class=\"headline\">" + escaped(run_name(report.runs[run])) + "</p>\n";
     }
+    out += failures_html(report.runs[run].document, 3) + verdicts_html(report.runs[run]);
     for (const DocumentSection& section : report.runs[run].document.sections)
       out += glance_html(section, run, sections[next++], reach);
   }
@@ -195,7 +237,8 @@ std::string section_html(const ReportRun& from, const DocumentSection& section, 
 
 std::string run_html(const ReportRun& from, std::size_t run, Warnings& warnings) {
   std::string out = "<section class=\"run\" id=\"run" + std::to_string(run + 1) + "\">\n" +
-                    element("h2", run_name(from)) + facts_html(from.document);
+                    element("h2", run_name(from)) + facts_html(from.document) +
+                    failures_html(from.document, 100);
   for (const DocumentSection& section : from.document.sections)
     out += section_html(from, section, run, warnings);
   return out + "</section>\n";

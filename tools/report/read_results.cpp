@@ -52,6 +52,21 @@ std::string text_of(const ordered_json& json, const char* name) {
   return json.is_object() && it != json.end() && it->is_string() ? it->get<std::string>() : "";
 }
 
+/// {"experiment", "error"} of an experiments file, which has them beside its document.
+Result<std::vector<Failure>> failures_of(const std::string& file, const ordered_json& json) {
+  std::vector<Failure> out;
+  const auto all = json.find("failures");
+  if (all == json.end()) return out;
+  if (!all->is_array()) return fail(ErrorKind::bad_input, file + ": /failures", "is not an array");
+  for (const ordered_json& one : *all) {
+    out.push_back({text_of(one, "experiment"), text_of(one, "error")});
+    if (!out.back().what.empty() && !out.back().why.empty()) continue;
+    return fail(ErrorKind::bad_input, file + ": /failures/" + std::to_string(out.size() - 1),
+                "has no text experiment or no text error");
+  }
+  return out;
+}
+
 Result<void> check_version(const std::string& file, const ordered_json& json) {
   const auto it = json.find("version");
   if (it == json.end()) return fail(ErrorKind::bad_input, file + ": /version", "is missing");
@@ -89,6 +104,9 @@ Result<ReportRun> read_results(const std::string& file) {
   if (document == json->end()) return fail(ErrorKind::bad_input, file + ": /document", "is missing");
   Result<Document> read = document_from_json(*document, file + ": /document");
   if (!read) return forward_error(read);
+  auto failures = failures_of(file, *json);
+  if (!failures) return forward_error(failures);
+  read->failures.insert(read->failures.end(), failures->begin(), failures->end());
   return ReportRun{std::move(*read), fs::path(file).parent_path().string()};
 }
 

@@ -54,6 +54,23 @@ struct Tally {
 };
 [[nodiscard]] Tally tally(const DocumentSection& section);
 
+/// How a figure of ours stands beside the paper's.
+[[nodiscard]] Finding finding_of(double ours, double paper, Better better);
+/// "✓", "≈", "✗", "=", "≠".
+[[nodiscard]] std::string_view sign_of(Finding finding);
+
+/// Cases that failed for one reason.
+struct FailureGroup {
+  std::string why;
+  std::vector<std::string> cases;
+
+  /// "a; b; c and 4 more": at most `most`.
+  [[nodiscard]] std::string cases_text(std::size_t most) const;
+};
+/// Of the document and of its sections, in this order, by reason.
+[[nodiscard]] std::vector<FailureGroup> failures_of(const Document& document);
+[[nodiscard]] std::size_t failure_count(const Document& document);
+
 /// How the figures of one column are written for people: all with as many decimals, so that they can be
 /// compared down the column, unless they differ too much in size.
 struct ColumnFormat {

@@ -59,6 +59,15 @@ h2 + .headline { margin-top: 0; }
 .better { color: var(--better); } .worse { color: var(--worse); } .level { color: var(--level); }
 .typical { color: var(--muted); }
 
+.failures { border: 1px dashed var(--worse); border-radius: 0.4rem; padding: 0.6rem 1rem; margin: 1rem 0; font-size: 0.9375rem; break-inside: avoid; }
+.failures p { margin: 0; } .failures strong { color: var(--worse); }
+.failures ul { margin: 0.25rem 0 0; padding-left: 1.1rem; } .failures li { overflow-wrap: anywhere; } .failures .case { font-weight: 600; }
+
+.verdicts { margin: 0 0 1.25rem; width: 100%; border: 1px solid var(--line); border-radius: 0.4rem; }
+.verdicts th, .verdicts td { padding: 0.35rem 0.6rem; position: static; }
+.verdicts tbody th { font-weight: 600; white-space: nowrap; } .verdicts .ours { font-weight: 600; }
+.verdicts .key { display: none; } .verdicts tr { break-inside: avoid; }
+
 .facts { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 18rem), 1fr)); gap: 0.35rem 1.5rem; margin: 0; font-size: 0.875rem; }
 .facts div { display: flex; gap: 0.6rem; min-width: 0; }
 .facts .long { grid-column: 1 / -1; }
@@ -121,6 +130,12 @@ details .scroll { margin-top: 0.5rem; max-height: 24rem; }
   th, td { padding: 0.35rem 0.5rem; }
   tbody th { max-width: 9rem; white-space: normal; min-width: 0; }
   svg.broad { display: none; } svg.slim { display: block; }
+  .verdicts, .verdicts tbody, .verdicts tr, .verdicts th, .verdicts td { display: block; max-width: none; }
+  .verdicts { border: 0; } .verdicts thead { display: none; }
+  .verdicts tr { border: 1px solid var(--line); border-radius: 0.4rem; padding: 0.5rem 0.75rem; margin-bottom: 0.6rem; }
+  .verdicts tbody th, .verdicts tbody td { border: 0; padding: 0.05rem 0; }
+  .verdicts td.paper, .verdicts td.ours, .verdicts td.s { display: inline-block; margin-right: 1rem; }
+  .verdicts .key { display: inline; color: var(--muted); font-weight: 400; font-style: normal; }
 }
 @media print {
   @page { margin: 16mm 14mm; }

@@ -18,7 +18,9 @@ using Warnings = std::vector<std::string>;
 [[nodiscard]] std::string report_html(const RunReport& report, Warnings& warnings);
 /// GitHub's Markdown. Pictures are links relative to `folder`, in which the file will be.
 [[nodiscard]] std::string report_markdown(const RunReport& report, const std::string& folder);
-/// Name and content of each file: one a table or chart, and facts.csv. RFC 4180, all digits, `name`s of
+/// Name and content of each file: one a table or chart, _facts.csv; _glance.csv (the paper's
+/// tables, a line each) and _failures.csv when there are such.
+/// RFC 4180, all digits, `name`s of
 /// columns as the heading.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> report_csv(const RunReport& report);
 /// {"schema": "sceneplay/report", "version": 1, "title", "runs": [documents]}

@@ -122,14 +122,48 @@ std::string block_text(const Picture& picture, const std::string& folder) {
          (picture.note.empty() ? "" : plain(picture.note) + "\n\n");
 }
 
+/// One line a reason; empty when nothing failed.
+std::string failures_text(const Document& document, std::size_t most) {
+  const std::size_t count = failure_count(document);
+  if (count == 0) return {};
+  std::string out = "**" + counted(count, "case") + " failed**\n\n";
+  for (const FailureGroup& group : failures_of(document))
+    out += "- " + plain(group.cases_text(most)) + ": " + plain(group.why) + "\n";
+  return out + "\n";
+}
+
+std::string verdicts_text(const Document& document) {
+  std::string rows;
+  for (const DocumentSection& section : document.sections) {
+    for (const Verdict& v : section.verdicts)
+      rows +=
+          row_text({plain(v.source), plain(v.what), plain(v.paper), plain(v.ours),
+                    std::string(sign_of(v.finding)) + " " + std::string(word_of(v.finding)), plain(v.why)});
+  }
+  if (rows.empty()) return {};
+  return row_text({"paper's table", "what", "paper", "ours", "ours", "why"}) +
+         rule_text({false, false, true, true, false, false}) + rows + "\n";
+}
+
+/// With the run's name above each where there are several.
+std::string verdicts_of_runs(const RunReport& report) {
+  std::string out;
+  for (const ReportRun& run : report.runs) {
+    const std::string verdicts = verdicts_text(run.document);
+    if (!verdicts.empty() && report.runs.size() > 1) out += "**" + plain(run_name(run)) + "**\n\n";
+    out += verdicts;
+  }
+  return out;
+}
+
 std::string summary_text(const RunReport& report) {
   std::vector<std::string> heads{"experiment", "better", "level", "worse", "typically", "what came out"};
   std::vector<bool> right{false, true, true, true, true, false};
   if (report.runs.size() > 1) heads.insert(heads.begin(), "run"), right.insert(right.begin(), false);
-  std::string out =
-      "## At a glance\n\nFigures of ours beside the paper's: \u2713 better, \u2248 level (within 2 %), "
-      "\u2717 worse.\n\n" +
-      row_text(heads) + rule_text(right);
+  std::string out = "## At a glance\n\n" + verdicts_of_runs(report) +
+                    "Figures of ours beside the paper's: \u2713 better, \u2248 level (within 2 %), "
+                    "\u2717 worse.\n\n" +
+                    row_text(heads) + rule_text(right);
   for (const ReportRun& run : report.runs) {
     for (const DocumentSection& section : run.document.sections) {
       const Tally t = tally(section);
@@ -147,7 +181,12 @@ std::string summary_text(const RunReport& report) {
       out += row_text(cells);
     }
   }
-  return out + "\n";
+  out += "\n";
+  for (const ReportRun& run : report.runs) {
+    const std::string failures = failures_text(run.document, 3);
+    out += failures.empty() || report.runs.size() == 1 ? failures : plain(run_name(run)) + ":\n\n" + failures;
+  }
+  return out;
 }
 
 /// The way from one folder to another, or the other itself when there is none.
@@ -201,6 +240,7 @@ std::string report_markdown(const RunReport& report, const std::string& folder) 
     for (const auto& [name, value] : run.document.facts)
       out += "- " + plain(name) + ": " + plain(value) + "\n";
     if (!run.document.facts.empty()) out += "\n";
+    out += failures_text(run.document, 100);
     const std::string pictures = way(folder, run.folder);
     for (const DocumentSection& section : run.document.sections) {
       out += "### " + plain(section.title) + "\n\n";
@@ -215,12 +255,25 @@ std::string report_markdown(const RunReport& report, const std::string& folder) 
 
 std::vector<std::pair<std::string, std::string>> report_csv(const RunReport& report) {
   Table facts({{"run", ""}, {"name", ""}, {"value", ""}});
+  Table failures({{"run", ""}, {"what", ""}, {"why", ""}});
+  bool failed = false;
+  Table verdicts(
+      {{"run", ""}, {"source", ""}, {"what", ""}, {"paper", ""}, {"ours", ""}, {"finding", ""}, {"why", ""}});
+  bool judged = false;
   std::vector<std::pair<std::string, std::string>> out;
   for (std::size_t run = 0; run < report.runs.size(); ++run) {
     const Document& document = report.runs[run].document;
     for (const auto& [name, value] : document.facts) facts.row({run + 1, name, value});
+    for (const FailureGroup& group : failures_of(document)) {
+      for (const std::string& what : group.cases) failures.row({run + 1, what, group.why});
+      failed = true;
+    }
     const std::string prefix = report.runs.size() > 1 ? "run" + std::to_string(run + 1) + "_" : "";
     for (const DocumentSection& section : document.sections) {
+      for (const Verdict& v : section.verdicts) {
+        verdicts.row({run + 1, v.source, v.what, v.paper, v.ours, word_of(v.finding), v.why});
+        judged = true;
+      }
       for (const Block& block : section.blocks) {
         if (const auto* table = std::get_if<DocumentTable>(&block))
           out.emplace_back(prefix + table->id + ".csv", table_csv(*table));
@@ -231,6 +284,8 @@ std::vector<std::pair<std::string, std::string>> report_csv(const RunReport& rep
   }
   // With an underscore in front, no table can have this name.
   out.emplace(out.begin(), "_facts.csv", facts.str(Format::csv));
+  if (judged) out.emplace(out.begin() + 1, "_glance.csv", verdicts.str(Format::csv));
+  if (failed) out.emplace(out.begin() + 1, "_failures.csv", failures.str(Format::csv));
   return out;
 }
 
