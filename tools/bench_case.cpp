@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 
 #include "render/strategy_names.h"
 #include "tools/frame_fields.h"
@@ -68,6 +69,13 @@ ordered_json rounded(const std::vector<double>& values) {
   return out;
 }
 
+/// Of this process, all threads.
+double process_cpu_ms() {
+  timespec t{};
+  (void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_nsec) * 1e-6;
+}
+
 }  // namespace
 
 Result<std::vector<BenchWay>> parse_ways(std::string_view text) {
@@ -92,6 +100,7 @@ ordered_json BenchRun::json() const {
   for (std::size_t i = 0; i < stages.size(); ++i) out["stagesMs"][stages[i]] = rounded(stages_ms[i]);
   for (std::size_t i = 0; i < counters.size(); ++i)
     out["counters"][std::string(counter_fields()[i].name)] = counters[i];
+  out["processCpuMs"] = process_cpu_ms ? ordered_json(*process_cpu_ms) : ordered_json();
   out["deviceBytes"] = device_bytes;
   out["startMs"] = start_ms ? ordered_json(*start_ms) : ordered_json();
   out["memory"] = memory;
@@ -111,6 +120,8 @@ std::optional<BenchRun> BenchRun::from_json(const ordered_json& json) {
     }
     for (const CounterField& field : counter_fields())
       run.counters.push_back(json.at("counters").at(std::string(field.name)).get<std::uint64_t>());
+    if (const auto cpu = json.find("processCpuMs"); cpu != json.end() && !cpu->is_null())
+      run.process_cpu_ms = cpu->get<double>();
     run.device_bytes = json.at("deviceBytes").get<std::uint64_t>();
     if (!json.at("startMs").is_null()) run.start_ms = json.at("startMs").get<double>();
     run.memory = json.at("memory");
@@ -167,6 +178,9 @@ struct BenchSeat::Pass {
     const double frame_ms = std::chrono::duration<double, std::milli>(now - before).count();
     before = now;
     const std::int64_t number = next++;
+    if (number == -1) cpu_before_ms = process_cpu_ms();
+    if (number == static_cast<std::int64_t>(frames) - 1)
+      run.process_cpu_ms = (process_cpu_ms() - cpu_before_ms) / static_cast<double>(frames);
     if (number < 0 || number >= static_cast<std::int64_t>(frames)) return false;
     run.frame_ms.push_back(frame_ms);
     run.stages_ms[0].push_back(seek_ms);
@@ -188,6 +202,7 @@ struct BenchSeat::Pass {
   std::size_t frames;
   std::int64_t next = 0;  ///< number of the frame that is finished next; the warm-up's are negative
   Clock::time_point before = Clock::now();
+  double cpu_before_ms = process_cpu_ms();  ///< at the end of the last frame that does not count
   BenchRun run;
 };
 

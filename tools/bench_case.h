@@ -51,7 +51,10 @@ struct BenchRun {
   std::vector<std::string> stages;             ///< names
   std::vector<std::vector<double>> stages_ms;  ///< by stage and frame; negative: not known
   std::vector<double> cpu_ms;                  ///< what the processor works for a frame
-  std::vector<std::uint64_t> counters;         ///< sums over the frames, in the order of counter_fields()
+  /// Processor time of the whole process, all threads, over the frames that count, a frame; what a software
+  /// device draws with is in it. None in runs that an earlier version kept.
+  std::optional<double> process_cpu_ms;
+  std::vector<std::uint64_t> counters;  ///< sums over the frames, in the order of counter_fields()
   std::uint64_t device_bytes = 0;
   std::optional<double> start_ms;  ///< from the scene in memory to the first frame; of a fresh renderer
   nlohmann::ordered_json memory;   ///< memory_json() after the last frame

@@ -89,6 +89,15 @@ ordered_json start_json(const CaseResult& result) {
   return starts.empty() ? ordered_json() : ordered_json(median_of(starts));
 }
 
+/// Over the runs, each of which has one figure.
+ordered_json process_cpu_json(const std::vector<BenchRun>& runs) {
+  std::vector<double> values;
+  for (const BenchRun& run : runs) {
+    if (run.process_cpu_ms) values.push_back(*run.process_cpu_ms);
+  }
+  return values.size() == runs.size() ? summary_json(values) : ordered_json();
+}
+
 ordered_json case_json(const CaseResult& result, std::optional<double> best_ms) {
   ordered_json out{{"file", result.what.file},
                    {"device", result.what.device},
@@ -108,6 +117,7 @@ ordered_json case_json(const CaseResult& result, std::optional<double> best_ms) 
   out["totalMs"] = result.mean_ms() * frames;
   out["vsBest"] = result.mean_ms() / best_ms.value_or(result.mean_ms());
   out["cpuMs"] = summary_json(pooled(result.runs, [](const BenchRun& r) { return r.cpu_ms; }));
+  out["processCpuMs"] = process_cpu_json(result.runs);
   for (std::size_t i = 0; i < first.stages.size(); ++i) {
     out["stagesMs"][first.stages[i]] =
         summary_json(pooled(result.runs, [i](const BenchRun& r) { return r.stages_ms[i]; }));

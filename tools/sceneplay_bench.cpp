@@ -1,6 +1,7 @@
 // sceneplay bench FILE... -o DIR: how long frames take, drawn in several ways.
 #include <algorithm>
 
+#include "render/strategy_names.h"
 #include "scene/limits.h"
 #include "tools/bench_run.h"
 #include "tools/camera_paths.h"
@@ -58,14 +59,21 @@ Result<void> not_empty(const std::string& text) {
   return {};
 }
 
+/// Every strategy that there is: one that is new must not be forgotten.
+std::vector<BenchWay> all_ways() {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : render::strategy_choices()) names.push_back(name);
+  return *parse_ways(join(names, ","));
+}
+
 /// What --quick sets, as if it had been given.
 void be_quick(const Options& options, BenchRequest& r) {
   const auto set = [&](std::string_view name, auto& target, auto value) {
     if (!options.given(name)) target = std::move(value);
   };
-  set("--strategy", r.ways, *parse_ways("brute,inline,octree-record,octree,queries-all,queries,adaptive"));
+  set("--strategy", r.ways, all_ways());
   if (!options.given("--camera"))
-    set("--camera-path", r.camera_paths, std::vector<std::string>{"orbit", "walk"});
+    set("--camera-path", r.camera_paths, std::vector<std::string>{"fixed", "orbit", "walk"});
   set("--size", r.drawing.size, glm::uvec2(320, 180));
   set("--samples", r.drawing.samples, 1U);
   set("--shadows", r.drawing.shadows, false);
@@ -88,8 +96,9 @@ void add_options(Options& options, BenchRequest& r) {
   options.group("Measuring");
   options.flag(
       "--quick", r.quick,
-      "small scenes that are made here, in all ways of drawing, from two camera paths: some minutes on a "
-      "software device. Sets --strategy, --camera-path, --size, --samples, --shadows, --frames, "
+      "small scenes that are made here (towns and test sets), in all ways of drawing, from three camera "
+      "paths (fixed, orbit, walk): some minutes on a software device. Sets --strategy, --camera-path, "
+      "--size, --samples, --shadows, --frames, "
       "--warm-up and --repeat unless they are given",
       Role::run);
   options.add("--repeat", whole_value(r.repeat, 1U, 1000U),

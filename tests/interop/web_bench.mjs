@@ -40,6 +40,7 @@ function checkFigures() {
     assert.equal(one.error, undefined);
     assert.deepEqual([one.frames, one.repetitions], [4, 1], one.strategy);
     assert.ok(one.frameMs.min > 0 && one.frameMs.median <= one.frameMs.p95 && one.vsBest >= 1, one.strategy);
+    assert.ok(one.processCpuMs.mean > 0, `${one.strategy}: processor time of all threads`);
     if (one.strategy === 'instanced') continue;
     assert.match(one.device, /SwiftShader/);
     assert.deepEqual([one.samples, one.overTime.timeS.length], [1, 4]);
@@ -48,6 +49,14 @@ function checkFigures() {
     assert.deepEqual(one.warnings, []);
   }
   assert.equal(readFileSync(file('results/bench.csv'), 'utf8').trim().split('\n').length, 1 + found.cases.length);
+  // All three stand in one table of a report, with what failed.
+  const report = JSON.parse(execFileSync(path.join(options.programs, 'sceneplay'), ['report', file('results/bench.json'), '-o', '-', '--format', 'json'], { encoding: 'utf8' }));
+  const [section] = report.runs[0].sections, frames = section.blocks.filter((block) => block.title === 'Frame time: house.glb, path.json');
+  assert.equal(frames.length, 1);
+  const cpu = frames[0].columns.findIndex((column) => column.name === 'processCpuMs');
+  assert.deepEqual(frames[0].rows.map((row) => row[0].split(',')[0]), ['three.js', 'Babylon.js', 'instanced']);
+  for (const [i, one] of of('house.glb').entries()) assert.equal(frames[0].rows[i][cpu], one.processCpuMs.mean);
+  assert.equal(section.failures.length, 3);
 }
 
 /// What is out of place is found: all of it, or a part.

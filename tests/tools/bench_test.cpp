@@ -131,6 +131,8 @@ TEST_CASE("bench: cases, runs, counters and both files") {
     CHECK(by_inline["frameMs"]["min"].get<double>() > 0);
     CHECK(by_inline["frameMs"]["low"] <= by_inline["frameMs"]["mean"]);
     CHECK(by_inline["totalMs"].get<double>() == Approx(6 * by_inline["frameMs"]["mean"].get<double>()));
+    // The renderer's stages run on a thread of this process; a software device adds to it.
+    CHECK(by_inline["processCpuMs"]["min"].get<double>() > 0);
     CHECK(by_inline["stagesMs"]["seek"]["mean"].get<double>() >= 0);
     CHECK(by_inline["device"] == bench["devices"][0]["name"]);
     CHECK(by_inline["frameMs"]["p25"] <= by_inline["frameMs"]["median"]);
@@ -156,6 +158,7 @@ TEST_CASE("bench: cases, runs, counters and both files") {
   CHECK(line_count(csv) == 9);
   CHECK(csv.starts_with("file,device,camera,framesInFlight,strategy,objects,"));
   CHECK(csv.find(",frameMs.mean,") != std::string::npos);
+  CHECK(csv.find(",processCpuMs.mean,") != std::string::npos);
   CHECK(csv.find(",counters.draws,") != std::string::npos);
 }
 
