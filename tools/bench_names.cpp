@@ -110,7 +110,8 @@ void BenchNames::make_titles() {
     thing.title = bases[thing.base] > 1 ? first.path : thing.base;
     if (paths[first.path] < 2) continue;
     // The file has changed between two results.
-    thing.title += first.objects >= 0 ? ", " + counted(static_cast<std::uint64_t>(first.objects), "object") : "";
+    thing.title +=
+        first.objects >= 0 ? ", " + counted(static_cast<std::uint64_t>(first.objects), "object") : "";
     thing.title += first.bytes >= 0 ? ", " + human_bytes(static_cast<std::uint64_t>(first.bytes)) : "";
   }
 }

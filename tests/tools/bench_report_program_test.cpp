@@ -26,8 +26,8 @@ void write_scenes(const TemporaryFolder& folder) {
   REQUIRE(gltf::write(render::test::wall_scene(), folder.file("a/wall.glb"), {}));
   Scene boxes;
   for (int i = 0; i < 20; ++i) {
-    const MeshId mesh =
-        render::test::add_mesh(boxes, render::test::box_geometry(), render::test::plain({0.5F, 0.5F, 0.5F, 1}));
+    const MeshId mesh = render::test::add_mesh(boxes, render::test::box_geometry(),
+                                               render::test::plain({0.5F, 0.5F, 0.5F, 1}));
     render::test::add_object(boxes, "box" + std::to_string(i), mesh, {2.0F * static_cast<float>(i), 0.5F, 0});
   }
   REQUIRE(gltf::write(boxes, folder.file("b/wall.glb"), {}));
@@ -78,10 +78,11 @@ const Cell& cell(const DocumentTable& table, std::size_t row, const std::string&
 TEST_CASE("report: scenes of one name stay apart, and viewers stand beside the scene that they drew") {
   const TemporaryFolder folder;
   write_scenes(folder);
-  const auto measured = play("bench " + folder.file("a/wall.glb") + " " + folder.file("b/wall.glb") +
-                             " --strategy inline,instanced --camera-path orbit --frames 3 --repeat 2 --warm-up 2 "
-                             "--size 32x18 --shadows off --readback --frames-in-flight 1 -q -o " +
-                             folder.file("all/ours"));
+  const auto measured =
+      play("bench " + folder.file("a/wall.glb") + " " + folder.file("b/wall.glb") +
+           " --strategy inline,instanced --camera-path orbit --frames 3 --repeat 2 --warm-up 2 "
+           "--size 32x18 --shadows off --readback --frames-in-flight 1 -q -o " +
+           folder.file("all/ours"));
   INFO(measured.err);
   REQUIRE(measured.code == 0);
   std::filesystem::create_directories(folder.file("all/web"));
@@ -103,7 +104,8 @@ TEST_CASE("report: scenes of one name stay apart, and viewers stand beside the s
   for (std::size_t i = 0; i < 4; ++i) {
     const DocumentTable& table = tables[i / 2];
     const ordered_json& c = bench["cases"][i];
-    CHECK(std::get<std::string>(cell(table, i % 2, "strategy")).starts_with(c["strategy"].get<std::string>()));
+    CHECK(
+        std::get<std::string>(cell(table, i % 2, "strategy")).starts_with(c["strategy"].get<std::string>()));
     CHECK(std::get<double>(cell(table, i % 2, "frameMs")) == c["frameMs"]["mean"]);
     CHECK(std::get<double>(cell(table, i % 2, "processCpuMs")) == c["processCpuMs"]["mean"]);
     CHECK(std::get<double>(cell(table, i % 2, "loadMs")) > 0);

@@ -18,7 +18,8 @@ constexpr std::size_t kLeast = 3;  // measured, however long they take
 /// A renderer before a scene that stands still at the end of its time.
 class StillScene {
  public:
-  StillScene(const Scene& scene, render::Renderer& renderer, timeline::Player& player, const render::View& view)
+  StillScene(const Scene& scene, render::Renderer& renderer, timeline::Player& player,
+             const render::View& view)
       : renderer_(renderer), player_(player), view_(view), end_s_(static_cast<double>(scene.duration_s)) {}
 
   Result<void> submit() { return renderer_.submit(player_.seek(end_s_), player_, view_); }
@@ -84,8 +85,8 @@ render::RendererOptions accuracy_options(render::RendererOptions options, Method
   return options;
 }
 
-Result<AccuracyRun> measure_accuracy(const Scene& scene, Method method, const render::RendererOptions& options,
-                                     const AccuracyRequest& request) {
+Result<AccuracyRun> measure_accuracy(const Scene& scene, Method method,
+                                     const render::RendererOptions& options, const AccuracyRequest& request) {
   auto camera = CameraMan::of_scene(scene, "", options.size);
   if (!camera) return forward_error(camera);
   timeline::Player player(timeline::compile(scene));
@@ -112,7 +113,8 @@ DeviationSummary summarize_deviations(std::vector<double> percent) {
   if (percent.empty()) return {};
   std::sort(percent.begin(), percent.end());
   const std::size_t n = percent.size();
-  return {n, mean_of(percent), spread_of(percent).median, percent[std::min(n - 1, n * 9 / 10)], percent.back()};
+  return {n, mean_of(percent), spread_of(percent).median, percent[std::min(n - 1, n * 9 / 10)],
+          percent.back()};
 }
 
 }  // namespace scenegen::tools

@@ -13,20 +13,22 @@
 namespace scenegen::tools {
 
 /// The dissertation's four, in its order.
-inline constexpr std::array kAccuracyMethods{render::model::Method::inline_frustum, render::model::Method::inline_queries,
-                                      render::model::Method::octree, render::model::Method::queries_all};
+inline constexpr std::array kAccuracyMethods{
+    render::model::Method::inline_frustum, render::model::Method::inline_queries,
+    render::model::Method::octree, render::model::Method::queries_all};
 
 struct AccuracyRequest {
-  std::size_t frames = 100;  ///< at most
-  double seconds = 1.0;      ///< after which no further frame begins, once three are measured
+  std::size_t frames = 100;    ///< at most
+  double seconds = 1.0;        ///< after which no further frame begins, once three are measured
   bool two_in_flight = false;  ///< measured after those of one; needs a renderer with two
   /// Is told of every frame that counts.
   std::function<void(const render::FrameReport& report, bool two)> on_frame = {};
 };
 
 struct AccuracyRun {
-  std::vector<double> one_ms, two_ms;  ///< a frame, with one and with two in flight, less what predicting takes
-  double predicted_one_ms = 0;         ///< with one in flight; median over the frames
+  std::vector<double> one_ms,
+      two_ms;                   ///< a frame, with one and with two in flight, less what predicting takes
+  double predicted_one_ms = 0;  ///< with one in flight; median over the frames
   render::FrameReport last;
 };
 

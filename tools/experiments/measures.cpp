@@ -196,7 +196,7 @@ std::string on_device(const ExperimentContext& context, const std::string& why) 
   return context.device_info.type == "CPU" ? "the processor draws here, not a GPU; " + why : why;
 }
 
-std::string sized(const ExperimentContext& context, std::string what) {
+std::string sized(const ExperimentContext& context, const std::string& what) {
   return context.quick ? what + " (small scenes)" : what;
 }
 

@@ -91,7 +91,7 @@ struct Turns {
 /// A reason of device times: that no GPU draws here, where none does.
 [[nodiscard]] std::string on_device(const ExperimentContext& context, const std::string& why);
 /// What a verdict compares, with " (small scenes)" when --quick made them so.
-[[nodiscard]] std::string sized(const ExperimentContext& context, std::string what);
+[[nodiscard]] std::string sized(const ExperimentContext& context, const std::string& what);
 
 /// A step of an experiment's progress line begins.
 void begin_step(const ExperimentContext& context, const std::string& what);

@@ -153,7 +153,7 @@ Result<void> add_still(const ExperimentContext& context, const Subject& subject,
   }
   const PaperTable paper("library_static");
   const PaperTable::Where row{{"scene", std::to_string(subject.set)}};
-  const auto theirs = [&](Cell cell) { return from.of_still ? cell : Cell(); };
+  const auto theirs = [&](const Cell& cell) { return from.of_still ? cell : Cell(); };
   const Spread plain = ways[0].frame_ms();
   const Spread own = ways[1].frame_ms();
   const Spread at_once = spread_of(merged_ms);
@@ -198,7 +198,7 @@ Result<void> add_animation(const ExperimentContext& context, const Subject& subj
   }
   const PaperTable paper("library_animation");
   const PaperTable::Where row{{"scene", std::to_string(subject.set)}};
-  const auto theirs = [&](Cell cell) { return from.of_animation ? cell : Cell(); };
+  const auto theirs = [&](const Cell& cell) { return from.of_animation ? cell : Cell(); };
   const Spread at_once = spread_of(merged_s);
   const Spread own = spread_of(own_s);
   const double gain = at_once.median / own.median;
