@@ -66,6 +66,7 @@ h2 + .headline { margin-top: 0; }
 .verdicts { margin: 0 0 1.25rem; width: 100%; border: 1px solid var(--line); border-radius: 0.4rem; }
 .verdicts th, .verdicts td { padding: 0.35rem 0.6rem; position: static; }
 .verdicts tbody th { font-weight: 600; white-space: nowrap; } .verdicts .ours { font-weight: 600; }
+.verdicts td { overflow-wrap: anywhere; min-width: 4.5rem; } .verdicts td:last-child { min-width: 14rem; }
 .verdicts .key { display: none; } .verdicts tr { break-inside: avoid; }
 
 .facts { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 18rem), 1fr)); gap: 0.35rem 1.5rem; margin: 0; font-size: 0.875rem; }
@@ -130,7 +131,7 @@ details .scroll { margin-top: 0.5rem; max-height: 24rem; }
   th, td { padding: 0.35rem 0.5rem; }
   tbody th { max-width: 9rem; white-space: normal; min-width: 0; }
   svg.broad { display: none; } svg.slim { display: block; }
-  .verdicts, .verdicts tbody, .verdicts tr, .verdicts th, .verdicts td { display: block; max-width: none; }
+  .verdicts, .verdicts tbody, .verdicts tr, .verdicts th, .verdicts td { display: block; min-width: 0; max-width: none; }
   .verdicts { border: 0; } .verdicts thead { display: none; }
   .verdicts tr { border: 1px solid var(--line); border-radius: 0.4rem; padding: 0.5rem 0.75rem; margin-bottom: 0.6rem; }
   .verdicts tbody th, .verdicts tbody td { border: 0; padding: 0.05rem 0; }
