@@ -59,6 +59,7 @@ class GpuScene {
   /// Bit i: the set has texture i.
   [[nodiscard]] std::uint32_t texture_mask(std::uint32_t set) const { return texture_masks_[set]; }
   [[nodiscard]] const GeometryRange& range(GeometryId id) const { return ranges_[id.value]; }
+  [[nodiscard]] std::span<const GeometryRange> ranges() const { return ranges_; }
   /// Of each geometry, as it is drawn.
   [[nodiscard]] std::span<const DrawWork> work() const { return work_; }
   /// Host memory; what is on the device is counted where it was allocated.

@@ -1,14 +1,12 @@
 #include "render/passes/hi_z.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
 
 #include "render/shaders/hi_z_cull_comp.h"
 #include "render/shaders/hi_z_pyramid_comp.h"
 #include "render/shaders/hi_z_pyramid_depth_comp.h"
 #include "render/shaders/hi_z_pyramid_samples_comp.h"
-#include "scene/held_bytes.h"
 
 namespace scenegen::render {
 
@@ -17,7 +15,9 @@ using Usage = vk::BufferUsageFlagBits;
 
 namespace {
 
-constexpr std::uint32_t kCommandWords = sizeof(VkDrawIndexedIndirectCommand) / sizeof(std::uint32_t);
+constexpr std::uint64_t kCommandBytes = sizeof(VkDrawIndexedIndirectCommand);
+constexpr std::uint32_t kCommandWords = kCommandBytes / sizeof(std::uint32_t);
+constexpr std::uint32_t kCullBuffers = 10;         // that hi_z_cull.comp binds
 constexpr std::uint32_t kMostGroupsInRow = 65535;  // every device takes as many
 constexpr std::uint32_t kLevelsAtOnce = 5;
 /// Levels above this say nothing more: a box's footprint is looked up in at most 4 x 4 texels.
@@ -56,80 +56,28 @@ vk::raii::Pipeline compute_pipeline(const vkr::Device& device, vk::PipelineLayou
   return {device.device, nullptr, vk::ComputePipelineCreateInfo({}, stage, layout)};
 }
 
-/// Memory that the processor writes once, on the device where it can be mapped there.
-template <class T>
-vkr::Buffer table(vkr::Memory& memory, std::span<const T> values) {
-  const std::uint64_t bytes = std::max<std::uint64_t>(values.size_bytes(), sizeof(T));
+/// Commands of a part: one a block, behind those one more a block where some draw mirrored slots.
+std::uint32_t commands_of(const HiZLayout& layout) {
+  return static_cast<std::uint32_t>(layout.blocks.size()) * (layout.mirrored ? 2 : 1);
+}
+
+/// Memory that the processor writes, on the device where it can be mapped there.
+vkr::Buffer written(vkr::Memory& memory, std::uint64_t bytes) {
+  bytes = std::max<std::uint64_t>(bytes, sizeof(std::uint32_t));
   vkr::Buffer out = memory.buffer(bytes, Usage::eStorageBuffer, vkr::MemoryUse::written, MemoryKind::lists);
   if (out.mapped() == nullptr)
     out = memory.buffer(bytes, Usage::eStorageBuffer, vkr::MemoryUse::upload, MemoryKind::lists);
+  return out;
+}
+
+template <class T>
+vkr::Buffer table(vkr::Memory& memory, std::span<const T> values) {
+  vkr::Buffer out = written(memory, values.size_bytes());
   if (!values.empty()) std::memcpy(out.mapped(), values.data(), values.size_bytes());
   return out;
 }
 
 }  // namespace
-
-HiZLayout::HiZLayout(const DrawScene& scene, const GpuScene& gpu, std::uint32_t longest_run,
-                     bool all_mirrored)
-    : mirrored(all_mirrored) {
-  // Groups: neighbours of one state and geometry.
-  struct Range {
-    std::uint32_t first, end;
-    bool mirrored;
-  };
-  std::vector<Range> ranges;
-  const DrawPrimitive* last = nullptr;
-  for (std::uint32_t slot = 0; slot < scene.solid_end(); ++slot) {
-    const DrawPrimitive& primitive = scene.primitive(slot);
-    const bool same =
-        last != nullptr &&
-        (last == &primitive || (last->batch == primitive.batch && last->geometry == primitive.geometry));
-    if (!same) ranges.push_back({slot, slot, all_mirrored});
-    ranges.back().end = slot + 1;
-    if (scene.mirrored(slot)) ranges.back().mirrored = mirrored = true;
-    last = &primitive;
-  }
-  block_slots = block_slots_of(scene.solid_end(), ranges.size());
-
-  for (const Range& range : ranges) {
-    const DrawPrimitive& primitive = scene.primitive(range.first);
-    const GeometryRange& geometry = gpu.range(primitive.geometry);
-    if (geometry.index_count == 0) continue;
-    const auto group = static_cast<std::uint32_t>(groups.size());
-    groups.push_back({glm::vec4(primitive.bounds_m.lo, 0.0F), glm::vec4(primitive.bounds_m.hi, 0.0F)});
-    const std::uint32_t triangles = geometry.kind == PrimitiveKind::triangles ? geometry.index_count / 3 : 0;
-    for (std::uint32_t first = range.first; first < range.end; first += block_slots) {
-      if (runs.empty() || runs.back().batch != primitive.batch || runs.back().count == longest_run)
-        runs.push_back({primitive.batch, false, static_cast<std::uint32_t>(blocks.size()), 0});
-      ++runs.back().count;
-      blocks.push_back({first, std::min(block_slots, range.end - first), group, range.mirrored ? 0 : kHiZNone,
-                        geometry.index_count, geometry.first_index,
-                        static_cast<std::uint32_t>(geometry.vertex_offset), triangles});
-    }
-  }
-  // Commands for mirrored slots behind all others, so that those of a state stand together.
-  commands = static_cast<std::uint32_t>(blocks.size());
-  for (HiZBlock& block : blocks) {
-    if (block.mirrored_command == kHiZNone) continue;
-    const std::uint32_t batch = scene.primitive(block.first).batch;
-    if (!runs.back().mirrored || runs.back().batch != batch || runs.back().count == longest_run)
-      runs.push_back({batch, true, commands, 0});
-    ++runs.back().count;
-    block.mirrored_command = commands++;
-  }
-}
-
-bool HiZLayout::draws_mirrored(std::uint32_t slot) const {
-  const auto after = std::upper_bound(blocks.begin(), blocks.end(), slot,
-                                      [](std::uint32_t s, const HiZBlock& block) { return s < block.first; });
-  if (after == blocks.begin()) return true;  // nothing is drawn of it
-  const HiZBlock& block = *std::prev(after);
-  return slot >= block.first + block.count || block.mirrored_command != kHiZNone;
-}
-
-std::uint64_t HiZLayout::memory_bytes() const {
-  return held_bytes(blocks, groups, runs);
-}
 
 HiZ::HiZ(const PassContext& context, const Target& target, const HiZLayout& layout) : layout_(layout) {
   bit_words_ = context.scene.visible().words().size() * 2;
@@ -142,16 +90,16 @@ HiZ::HiZ(const PassContext& context, const Target& target, const HiZLayout& layo
   };
   blocks_ = table(context.memory, std::span(layout.blocks));
   groups_ = table(context.memory, std::span(layout.groups));
+  slots_ = table(context.memory, std::span(layout.slots));
   seen_ = on_device(seen_words * sizeof(std::uint32_t), Usage::eTransferDst);
   list_ = on_device(slots * sizeof(std::uint32_t), Usage::eVertexBuffer);
+  longest_run_ = std::max(context.device.properties.limits.maxDrawIndirectCount, 1U);
   commands_ =
-      on_device(2 * std::max<std::uint64_t>(layout.commands, 1) * sizeof(VkDrawIndexedIndirectCommand),
-                Usage::eIndirectBuffer);
+      on_device(2 * std::max<std::uint64_t>(commands_of(layout), 1) * kCommandBytes, Usage::eIndirectBuffer);
   counts_ = on_device(sizeof(HiZCounts), Usage::eTransferDst | Usage::eTransferSrc);
   for (std::uint32_t i = 0; i < context.frames_in_flight; ++i) {
-    places_[i].bits =
-        context.memory.buffer(std::max<std::uint64_t>(2 * bit_words_, 1) * sizeof(std::uint32_t),
-                              Usage::eStorageBuffer, vkr::MemoryUse::upload, MemoryKind::lists);
+    places_[i].bits = written(context.memory, 2 * bit_words_ * sizeof(std::uint32_t));
+    places_[i].order = written(context.memory, layout.blocks.size() * sizeof(std::uint32_t));
     places_[i].counts = context.memory.buffer(sizeof(HiZCounts), Usage::eTransferDst,
                                               vkr::MemoryUse::readback, MemoryKind::lists);
   }
@@ -163,7 +111,7 @@ HiZ::HiZ(const PassContext& context, const Target& target, const HiZLayout& layo
 void HiZ::make_cull(const PassContext& context) {
   using Type = vk::DescriptorType;
   const vkr::Device& device = context.device;
-  std::array<vk::DescriptorSetLayoutBinding, 8> bindings;
+  std::array<vk::DescriptorSetLayoutBinding, kCullBuffers> bindings;
   for (std::uint32_t i = 0; i < bindings.size(); ++i)
     bindings[i] =
         vk::DescriptorSetLayoutBinding(i, Type::eStorageBuffer, 1, vk::ShaderStageFlagBits::eCompute);
@@ -175,7 +123,7 @@ void HiZ::make_cull(const PassContext& context) {
   const vk::SpecializationMapEntry entry(3, 0, sizeof(std::uint32_t));
   const vk::SpecializationInfo specialization(1, &entry, sizeof(std::uint32_t), &layout_.block_slots);
   cull_ = compute_pipeline(device, *cull_layout_, kHiZCullComp, &specialization);
-  const std::array sizes{vk::DescriptorPoolSize(Type::eStorageBuffer, 8 * kMostFramesInFlight + 1),
+  const std::array sizes{vk::DescriptorPoolSize(Type::eStorageBuffer, kCullBuffers * kMostFramesInFlight + 1),
                          vk::DescriptorPoolSize(Type::eCombinedImageSampler, 1)};
   pool_ = vk::raii::DescriptorPool(device.device,
                                    vk::DescriptorPoolCreateInfo({}, kMostFramesInFlight + 1, sizes));
@@ -222,9 +170,9 @@ void HiZ::resized(const PassContext& context, const Target& target) {
        vk::WriteDescriptorSet(pyramid_set_, 1, 0, Type::eCombinedImageSampler, depth, {})},
       {});
   for (std::uint32_t i = 0; i < context.frames_in_flight; ++i) {
-    std::array<vk::DescriptorBufferInfo, 8> infos;
-    const std::array buffers{&blocks_, &groups_,   &places_[i].bits, &seen_,
-                             &list_,   &commands_, &pyramid_,        &counts_};
+    std::array<vk::DescriptorBufferInfo, kCullBuffers> infos;
+    const std::array buffers{&blocks_,   &groups_,  &places_[i].bits, &seen_,  &list_,
+                             &commands_, &pyramid_, &counts_,         &slots_, &places_[i].order};
     for (std::size_t b = 0; b < buffers.size(); ++b)
       infos[b] = vk::DescriptorBufferInfo(*buffers[b]->buffer, 0, VK_WHOLE_SIZE);
     context.device.device.updateDescriptorSets(
@@ -240,6 +188,12 @@ void HiZ::write_slots(const PassContext& context, std::uint64_t revision) {
   std::memcpy(p.bits.mapped(), visible.data(), visible.size_bytes());
   std::memcpy(p.bits.mapped() + visible.size_bytes(), mirrored.data(), mirrored.size_bytes());
   p.revision = revision;
+}
+
+void HiZ::write_order(const PassContext& context, const HiZOrder& order) {
+  const auto blocks = order.blocks();
+  in_order_ = static_cast<std::uint32_t>(blocks.size());
+  if (!blocks.empty()) std::memcpy(place(context).order.mapped(), blocks.data(), blocks.size_bytes());
 }
 
 void HiZ::build_pyramid(const PassContext& context, Target& target) {
@@ -292,20 +246,20 @@ void HiZ::cull(const PassContext& context, Target& target, std::uint32_t part) {
       .buffer(*commands_.buffer, Use::indirect, Use::compute_write)
       .flush(commands);
 
-  const auto blocks = static_cast<std::uint32_t>(layout_.blocks.size());
   HiZConstants constants{};
   constants.size_px = {extent_.width, extent_.height};
   constants.levels = levels_;
   constants.part = part;
-  constants.blocks = blocks;
-  constants.groups_x = std::min(blocks, kMostGroupsInRow);
+  constants.blocks = in_order_;
+  constants.groups_x = std::clamp(in_order_, 1U, kMostGroupsInRow);
   constants.bit_words = static_cast<std::uint32_t>(bit_words_);
-  constants.command_words = kCommandWords * layout_.commands;
+  constants.command_words = kCommandWords * commands_of(layout_);
+  constants.mirrored_words = kCommandWords * static_cast<std::uint32_t>(layout_.blocks.size());
   commands.bindPipeline(vk::PipelineBindPoint::eCompute, *cull_);
   context.gpu.bind_frame_set(commands, *cull_layout_, vk::PipelineBindPoint::eCompute);
   commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *cull_layout_, 1, place(context).set, {});
   commands.pushConstants<HiZConstants>(*cull_layout_, vk::ShaderStageFlagBits::eCompute, 0, constants);
-  commands.dispatch(constants.groups_x, (blocks + constants.groups_x - 1) / constants.groups_x, 1);
+  commands.dispatch(constants.groups_x, (in_order_ + constants.groups_x - 1) / constants.groups_x, 1);
   barriers.buffer(*list_.buffer, Use::compute_write, Use::shader_data)
       .buffer(*commands_.buffer, Use::compute_write, Use::indirect);
   if (part == 1) barriers.buffer(*counts_.buffer, Use::compute_update, Use::transfer_read);
@@ -322,14 +276,20 @@ void HiZ::copy_counts(const PassContext& context) {
       .flush(context.frame.commands);
 }
 
-void HiZ::draw(DrawRecorder& recorder, std::uint32_t part) const {
+void HiZ::draw(DrawRecorder& recorder, const HiZOrder& order, std::uint32_t part) const {
   if (layout_.blocks.empty()) return;
   recorder.read_slots_from(*list_.buffer);
-  constexpr std::uint64_t kBytes = sizeof(VkDrawIndexedIndirectCommand);
-  const std::uint64_t begin = std::uint64_t{part} * layout_.commands * kBytes;
-  for (const HiZLayout::Run& run : layout_.runs)
-    recorder.draw_listed_indirect(
-        {run.batch, run.mirrored, *commands_.buffer, begin + run.first * kBytes, run.count});
+  const std::uint64_t begin = std::uint64_t{part} * commands_of(layout_);
+  for (std::size_t r = 0; r < layout_.runs.size(); ++r) {
+    const auto [first, count] = order.parts()[r];
+    for (const bool mirrored : {false, true}) {
+      if (mirrored && !layout_.runs[r].mirrored) continue;
+      const std::uint64_t at = begin + (mirrored ? layout_.blocks.size() : 0) + first;
+      for (std::uint32_t done = 0; done < count; done += longest_run_)
+        recorder.draw_listed_indirect({layout_.runs[r].batch, mirrored, *commands_.buffer,
+                                       (at + done) * kCommandBytes, std::min(longest_run_, count - done)});
+    }
+  }
 }
 
 HiZCounts HiZ::counts(std::uint64_t serial, std::uint32_t frames_in_flight) const {

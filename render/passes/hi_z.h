@@ -4,45 +4,13 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 #include <vulkan/vulkan_raii.hpp>
 
 #include "render/config.h"
+#include "render/passes/hi_z_layout.h"
 #include "render/passes/pass_recording.h"
-#include "render/shaders/hi_z_types.h"
 
 namespace scenegen::render {
-
-/// Slots of the scene in blocks that share state and geometry, and the indirect draws that they come to: one
-/// a block, one more for those of its slots that are mirrored. Not changed once it is made.
-struct HiZLayout {
-  /// Commands [first, first + count) that one pipeline state draws.
-  struct Run {
-    std::uint32_t batch = 0;
-    bool mirrored = false;
-    std::uint32_t first = 0;
-    std::uint32_t count = 0;
-  };
-  std::uint32_t block_slots = 256;  ///< at most, of each block
-  std::uint32_t commands = 0;
-  std::vector<HiZBlock> blocks;
-  std::vector<HiZGroup> groups;
-  std::vector<Run> runs;
-
-  bool mirrored = false;  ///< some blocks have a command for mirrored slots
-
-  /// 256, or 64 where geometries are shared by few.
-  [[nodiscard]] static std::uint32_t block_slots_of(std::uint64_t slots, std::uint64_t groups) {
-    return groups > 0 && slots / groups < 128 ? 64 : 256;
-  }
-
-  /// Blocks of 256 slots where as many share a geometry, else of 64. Those in which a slot is mirrored now
-  /// have a command for such slots, with `all_mirrored` every one.
-  HiZLayout(const DrawScene& scene, const GpuScene& gpu, std::uint32_t longest_run, bool all_mirrored);
-  /// Does the block of this slot have a command for mirrored ones?
-  [[nodiscard]] bool draws_mirrored(std::uint32_t slot) const;
-  [[nodiscard]] std::uint64_t memory_bytes() const;
-};
 
 /// What the device counted in a frame, by part.
 struct HiZCounts {
@@ -54,7 +22,8 @@ struct HiZCounts {
 };
 
 /// Of one kind of pass (colour; ids), each of which has a depth of its own. Everything but the bits of
-/// visible and mirrored slots stays on the device: 4 B and 1/8 B a slot, 40 B a block.
+/// visible and mirrored slots and the order of blocks stays on the device: 8 B and 1/8 B a slot, 72 B a
+/// block.
 class HiZ {
  public:
   HiZ(const PassContext& context, const Target& target, const HiZLayout& layout);
@@ -64,11 +33,13 @@ class HiZ {
   /// Sets of slots that are visible by timeline, and mirrored; `revision` tells one state of them from
   /// another.
   void write_slots(const PassContext& context, std::uint64_t revision);
+  /// Which blocks the frame looks at.
+  void write_order(const PassContext& context, const HiZOrder& order);
   /// Outside a pass: finds what a part (0 or 1) draws. Before part 1 the pyramid is made of the depth that
   /// part 0 left.
   void cull(const PassContext& context, Target& target, std::uint32_t part);
   /// Inside the pass.
-  void draw(DrawRecorder& recorder, std::uint32_t part) const;
+  void draw(DrawRecorder& recorder, const HiZOrder& order, std::uint32_t part) const;
   /// What was counted in a frame that is done; nothing when it was not drawn this way, or its place was used
   /// again.
   [[nodiscard]] HiZCounts counts(std::uint64_t serial, std::uint32_t frames_in_flight) const;
@@ -76,6 +47,7 @@ class HiZ {
  private:
   struct Place {  // of a frame in flight
     vkr::Buffer bits;
+    vkr::Buffer order;   // of blocks
     vkr::Buffer counts;  // for the processor
     std::uint64_t revision = 0;
     std::uint64_t counted = 0;  // serial of the frame whose counts they are
@@ -95,8 +67,10 @@ class HiZ {
   std::uint32_t levels_ = 1;
   std::uint64_t bit_words_ = 0;
   bool cleared_ = false;
+  std::uint32_t in_order_ = 0;     // blocks that this frame looks at
+  std::uint32_t longest_run_ = 1;  // commands of one indirect draw
   std::array<Place, kMostFramesInFlight> places_;
-  vkr::Buffer blocks_, groups_, seen_, list_, commands_, pyramid_, counts_;
+  vkr::Buffer blocks_, groups_, slots_, seen_, list_, commands_, pyramid_, counts_;
   vk::raii::Sampler sampler_{nullptr};
   vk::raii::DescriptorSetLayout cull_set_layout_{nullptr}, pyramid_set_layout_{nullptr};
   vk::raii::PipelineLayout cull_layout_{nullptr}, pyramid_layout_{nullptr};

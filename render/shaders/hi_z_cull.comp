@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Which slots a part of a pass draws, a workgroup for each block of slots: the first part what was seen in the frame
-// before and is still in the frustum, the second what else is not hidden behind the depth that the first left. Within a block the
-// order is that of the slots, so the same frames give the same draws however threads run.
+// before and is still in the frustum, the second what else is not hidden behind the depth that the first left. Within a block
+// nearer slots come first, of equally near ones those that stand first in it: the same frames give the same draws however threads run.
 #include "common.glsl"
 #include "hi_z_types.h"
 
@@ -17,6 +17,8 @@ layout(set = 1, binding = 4, std430) writeonly buffer List { uint list[]; };
 layout(set = 1, binding = 5, std430) writeonly buffer Commands { uint commands[]; };
 layout(set = 1, binding = 6, std430) readonly buffer Pyramid { float pyramid[]; };
 layout(set = 1, binding = 7, std430) buffer Counts { uint counts[]; };
+layout(set = 1, binding = 8, std430) readonly buffer Slots { uint slots[]; };  // by block
+layout(set = 1, binding = 9, std430) readonly buffer Order { uint order[]; };  // of blocks
 
 layout(push_constant) uniform Constants { HiZConstants constants; };
 
@@ -24,6 +26,7 @@ const uint kWords = kBlockSlots / 32;
 const float kInfinity = 3.4e38;
 shared uint s_drawn[8];  // slots of the block that are drawn
 shared uint s_mirrored[8];
+shared float s_near[256];  // of what is drawn, in the order of the block, mirrored ones last
 
 // Where a box of a slot lies in the picture.
 struct Footprint {
@@ -118,8 +121,9 @@ void write_command(uint at, HiZBlock block, uint instances, uint first) {
 }
 
 void main() {
-  uint number = gl_WorkGroupID.y * constants.groups_x + gl_WorkGroupID.x;
-  if (number >= constants.blocks) return;  // the same for all threads
+  uint place = gl_WorkGroupID.y * constants.groups_x + gl_WorkGroupID.x;
+  if (place >= constants.blocks) return;  // the same for all threads
+  uint number = order[place];
   HiZBlock block = blocks[number];
   uint i = gl_LocalInvocationIndex;
   if (i < kWords) {
@@ -128,17 +132,19 @@ void main() {
   }
   barrier();
 
-  uint slot = block.first + i;
+  uint slot = i < block.count ? slots[block.first + i] : 0;
   bool second = constants.part != 0;
   bool before = (seen[number * kWords + i / 32] >> (i % 32) & 1) != 0;  // in the second part: drawn by the first
   bool shown = i < block.count && bit(0, slot);
   bool passes = false;
+  float near = 0.0;
   if (shown && (second || before)) {
     Footprint f = footprint(slot, groups[block.group].lo.xyz, groups[block.group].hi.xyz);
     passes = f.in_frustum && (!second || !hidden(f));
+    near = f.at_eye ? kInfinity : f.nearest;
   }
   bool draws = passes && !(second && before);
-  bool mirrored = draws && block.mirrored_command != kHiZNone && bit(constants.bit_words, slot);
+  bool mirrored = draws && block.mirrored != 0 && bit(constants.bit_words, slot);
   // Bits of what to remember go where those of what was drawn before stand: all of them are read by now.
   uint drawn_before = 0;
   if (second) {
@@ -157,14 +163,24 @@ void main() {
     mirrored_before += bitCount(s_mirrored[k] & below);
     mirrored_all += bitCount(s_mirrored[k]);
   }
+  uint at = mirrored ? normal_all + mirrored_before : normal_before;
+  if (draws) s_near[at] = near;
+  barrier();
   // What the first part drew stands first in the block's piece of the list.
   uint first = block.first + drawn_before;
-  if (draws) list[first + (mirrored ? normal_all + mirrored_before : normal_before)] = slot;
+  if (draws) {
+    uint rank = mirrored ? normal_all : 0;
+    uint end = mirrored ? normal_all + mirrored_all : normal_all;
+    for (uint k = rank; k < end; ++k) {
+      if (s_near[k] > near || (s_near[k] == near && k < at)) ++rank;
+    }
+    list[first + rank] = slot;
+  }
   if (i == 0) {
-    uint at = constants.part * constants.command_words;
-    write_command(at + 5 * number, block, normal_all, first);
-    if (block.mirrored_command != kHiZNone)
-      write_command(at + 5 * block.mirrored_command, block, mirrored_all, first + normal_all);
+    uint to = constants.part * constants.command_words + 5 * place;
+    write_command(to, block, normal_all, first);
+    if (block.mirrored != 0)
+      write_command(to + constants.mirrored_words, block, mirrored_all, first + normal_all);
     uint drawn = normal_all + mirrored_all;
     if (drawn != 0) {
       atomicAdd(counts[2 * constants.part], drawn);

@@ -13,13 +13,13 @@ using uint = std::uint32_t;
 
 const uint kHiZNone = 0xFFFFFFFFu;
 
-/// Slots [first, first + count): they share state and geometry. One command draws those of them that are to
-/// be drawn, a second one those that are mirrored.
+/// Slots [first, first + count) of the table of slots: they share state and geometry. One command draws those
+/// of them that are to be drawn, a second one those that are mirrored.
 struct HiZBlock {
   uint first;
   uint count;
   uint group;
-  uint mirrored_command;  // kHiZNone: none is mirrored
+  uint mirrored;  // 0: none ever is
   uint index_count;
   uint first_index;
   uint vertex_offset;
@@ -34,18 +34,20 @@ struct HiZGroup {
 
 struct HiZConstants {
   uvec2 size_px;
-  uint levels;  // of the pyramid
-  uint part;    // 0 or 1
-  uint blocks;
-  uint groups_x;       // workgroups in a row
-  uint bit_words;      // 32-bit words of a set of slots
-  uint command_words;  // of all commands of a part
+  uint levels;          // of the pyramid
+  uint part;            // 0 or 1
+  uint blocks;          // that the frame looks at
+  uint groups_x;        // workgroups in a row
+  uint bit_words;       // 32-bit words of a set of slots
+  uint command_words;   // of all commands of a part
+  uint mirrored_words;  // from a block's command to the one for its mirrored slots
+  uint unused0;
 };
 
 #ifdef __cplusplus
 static_assert(sizeof(HiZBlock) == 32);
 static_assert(sizeof(HiZGroup) == 32);
-static_assert(sizeof(HiZConstants) == 32);
+static_assert(sizeof(HiZConstants) == 40);
 }  // namespace scenegen::render
 #endif
 #endif

@@ -25,9 +25,9 @@ double count_blocks(const DrawScene& scene) {
     last = &primitive;
   }
   const std::uint32_t each = HiZLayout::block_slots_of(scene.solid_end(), groups.size());
-  double blocks = 0;
+  std::uint64_t blocks = 0;
   for (const std::uint32_t slots : groups) blocks += (slots + each - 1) / each;
-  return blocks;
+  return static_cast<double>(blocks);
 }
 
 class HiZStrategy final : public DeviceCulled {
@@ -46,10 +46,12 @@ class HiZStrategy final : public DeviceCulled {
   void update(const timeline::ChangeSet& changes) override {
     ListStrategy::update(changes);
     if (!changes.shown.empty() || !changes.hidden.empty() || !changes.remeshed.empty()) ++revision_;
-    if (changes.moved.empty() || !layout_) return;
+    if (changes.moved.empty() || !order_) return;
     for (const ObjectId id : changes.moved) {
-      for (const std::uint32_t slot : scene_.slots_of(id))
+      for (const std::uint32_t slot : scene_.slots_of(id)) {
+        order_->moved(slot, scene_.boxes().get(slot));
         turned_over_ = turned_over_ || (scene_.mirrored(slot) && !layout_->draws_mirrored(slot));
+      }
     }
     if (layout_->mirrored || turned_over_) ++revision_;
   }
@@ -59,6 +61,7 @@ class HiZStrategy final : public DeviceCulled {
     const CullPlanes planes = cull_planes(frustum_of(view.clip_from_world), scene_.bounds_m());
     inline_ ? list_in_frustum(scene_, planes, list_) : list_blended_in_frustum(scene_, planes, list_);
     finish_plan(view);
+    if (order_ && !inline_) order_->rank(view);
   }
 
   void draw_solid(PassRecording& pass) override {
@@ -77,11 +80,11 @@ class HiZStrategy final : public DeviceCulled {
 
     pass.in_two_parts();
     culling->cull(pass.context(), pass.target(), 0);
-    culling->draw(pass.draws(), 0);
+    culling->draw(pass.draws(), *order_, 0);
     pass.end_first_part();
     culling->cull(pass.context(), pass.target(), 1);
     DrawRecorder& second = pass.draws();
-    if (!options_.late_visibility) culling->draw(second, 1);
+    if (!options_.late_visibility) culling->draw(second, *order_, 1);
   }
 
   [[nodiscard]] DeviceCounts device_counts(std::uint64_t serial) const override {
@@ -136,6 +139,7 @@ class HiZStrategy final : public DeviceCulled {
   void add_memory(MemoryAccount& to) const override {
     ListStrategy::add_memory(to);
     if (layout_) to.add_host(MemoryKind::lists, layout_->memory_bytes());
+    if (order_) to.add_host(MemoryKind::lists, order_->memory_bytes());
   }
 
  private:
@@ -150,9 +154,9 @@ class HiZStrategy final : public DeviceCulled {
         old_ = std::move(culling_);
         old_layout_ = std::move(layout_);
       }
-      layout_ = std::make_unique<HiZLayout>(scene_, context.gpu,
-                                            context.device.properties.limits.maxDrawIndirectCount,
-                                            std::exchange(turned_over_, false));
+      layout_ = std::make_unique<HiZLayout>(scene_, context.gpu.ranges(), std::exchange(turned_over_, false));
+      order_ = std::make_unique<HiZOrder>(*layout_, scene_);
+      order_->rank(view_);
     }
     std::unique_ptr<HiZ>& culling = culling_[kind];
     if (!culling) {
@@ -162,6 +166,7 @@ class HiZStrategy final : public DeviceCulled {
     }
     stale_[kind] = false;
     culling->write_slots(context, revision_);
+    culling->write_order(context, *order_);
     return *culling;
   }
 
@@ -182,6 +187,7 @@ class HiZStrategy final : public DeviceCulled {
   std::uint64_t revision_ = 1;  // of the sets of visible and mirrored slots
   bool turned_over_ = false;    // a slot became mirrored that no command draws
   std::unique_ptr<HiZLayout> layout_, old_layout_;
+  std::unique_ptr<HiZOrder> order_;
   std::array<std::unique_ptr<HiZ>, 2> culling_, old_;
   std::array<bool, 2> stale_{};
 };
