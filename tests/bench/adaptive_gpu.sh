@@ -16,4 +16,4 @@ for c in ${COHERENCE:-0.001 0.01 0.03 0.1 0.2 0.3 0.4 0.5 0.6 0.7 0.8 0.9 0.95 0
 done
 "$bin/sceneplay" bench "${scenes[@]}" -o "$out" --camera-path tests/bench/set32_street.json --camera-path tests/bench/set32_aerial.json \
   --times 80:89.28:0.32,180:189.28:0.32,290:299.28:0.32 --size 1920x1080 --shadows off --frames-in-flight 1,2 --repeat 1 --warm-up 60 \
-  --strategy inline,octree-record,octree,queries,adaptive "$@"
+  --strategy inline,octree-record,octree,queries,hi-z,adaptive "$@"
