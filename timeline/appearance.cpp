@@ -17,7 +17,6 @@ namespace {
 constexpr std::uint32_t kNotTimed = 0xFFFFFFFFU;
 // Time of cell n is n * interval: float32 tells at most 2^24 of such times apart.
 constexpr std::uint64_t kMostTimedCells = 1U << 24;
-constexpr double kLongest = 1e38;  // s; float32 ends at 3.4e38
 
 std::string text_of(double value) {
   std::array<char, 32> buffer{};

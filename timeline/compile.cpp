@@ -15,8 +15,6 @@ namespace scenegen::timeline {
 
 namespace {
 
-constexpr std::uint32_t kNone = MovingFrame::kNone;
-
 struct Pair {
   std::uint32_t list, item;
 };

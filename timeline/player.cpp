@@ -14,8 +14,6 @@ namespace scenegen::timeline {
 
 namespace {
 
-constexpr std::uint32_t kNone = MovingFrame::kNone;
-
 template <class T>
 bool same_bits(const T& a, const T& b) {
   using Words = std::array<std::uint32_t, sizeof(T) / 4>;

@@ -17,8 +17,6 @@
 namespace scenegen::timeline {
 namespace {
 
-constexpr double kLongest = 1e38;  // s; float32 ends at 3.4e38
-
 /// An object with its activities, in order of start.
 struct Actor {
   ObjectId object;

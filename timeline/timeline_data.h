@@ -86,6 +86,7 @@ struct MovingFrame {
   std::uint32_t first_child = 0, end_child = 0;    ///< into TimelineData::children
   std::uint32_t first_object = 0, end_object = 0;  ///< into TimelineData::frame_objects
 };
+constexpr std::uint32_t kNone = MovingFrame::kNone;
 
 struct TimelineData {
   double duration_s = 0;

@@ -96,7 +96,7 @@ bool same_bits(std::span<const float> a, std::span<const float> b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
 }
 
-constexpr float kNever = std::numeric_limits<float>::infinity();
+constexpr float kNoChange = std::numeric_limits<float>::infinity();
 
 /// The first key whose value differs from the one before.
 float first_change_s(const Scene& scene, TrackId id) {
@@ -106,7 +106,7 @@ float first_change_s(const Scene& scene, TrackId id) {
     if (!same_bits(values.subspan(k * floats, floats), values.subspan((k - 1) * floats, floats)))
       return times_s[k];
   }
-  return kNever;
+  return kNoChange;
 }
 
 }  // namespace
@@ -118,9 +118,10 @@ ObjectStarts::ObjectStarts(const Scene& scene) : scene_(scene), visibility_(scen
     visibility_[i] = {scene.values(id).front() != 0.0F, first_change_s(scene, id)};
   }
   if (scene.object_mesh_tracks.empty() && scene.material_tracks.empty()) return;
-  look_change_s_.assign(scene.objects.size(), kNever);
+  look_change_s_.assign(scene.objects.size(), kNoChange);
   if (!scene.material_tracks.empty()) {
-    std::vector<float> of_material(scene.materials.size(), kNever), of_mesh(scene.meshes.size(), kNever);
+    std::vector<float> of_material(scene.materials.size(), kNoChange),
+        of_mesh(scene.meshes.size(), kNoChange);
     for (const MaterialTrack& use : scene.material_tracks) {
       float& change_s = of_material[use.material.value];
       change_s = std::min(change_s, first_change_s(scene, use.track));
@@ -141,8 +142,8 @@ ObjectStarts::ObjectStarts(const Scene& scene) : scene_(scene), visibility_(scen
 
 std::optional<float> ObjectStarts::of(ObjectId object) const {
   const TrackId track = scene_.objects.visibility[object.value];
-  const float look_s = look_change_s_.empty() ? kNever : look_change_s_[object.value];
-  if (!track.valid()) return look_s == kNever ? std::nullopt : std::optional(look_s);
+  const float look_s = look_change_s_.empty() ? kNoChange : look_change_s_[object.value];
+  if (!track.valid()) return look_s == kNoChange ? std::nullopt : std::optional(look_s);
   const Visibility& visibility = visibility_[track.value];
   return visibility.there_at_start ? std::min(look_s, visibility.change_s) : visibility.change_s;
 }

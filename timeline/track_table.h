@@ -11,6 +11,8 @@
 
 namespace scenegen::timeline {
 
+constexpr double kLongest = 1e38;  // s; float32 ends at 3.4e38
+
 /// Makes every object always visible: forgets all visibility tracks, drops them from the table with the keys
 /// that no other track uses, and renumbers what names the tracks that stay.
 void remove_visibility_tracks(Scene& scene);

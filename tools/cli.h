@@ -59,6 +59,8 @@ template <class Whole>
 [[nodiscard]] Value metres3_value(glm::dvec3& target, double least, double most, std::string form);
 [[nodiscard]] Value on_off_value(bool& target);
 [[nodiscard]] Value text_value(std::string& target, std::string form, std::string range = {});
+/// A check for texts_value().
+[[nodiscard]] Result<void> not_empty(const std::string& text);
 /// An option that may be given several times; `check` looks at each text.
 [[nodiscard]] Value texts_value(std::vector<std::string>& target, std::string form, std::string range,
                                 std::function<Result<void>(const std::string&)> check);

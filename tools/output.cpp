@@ -243,6 +243,15 @@ Result<void> check_output_file(const std::string& path) {
   return {};
 }
 
+Result<void> make_folder(const std::string& folder, const std::string& file) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder, error))
+    return fail(ErrorKind::io, folder, error ? "cannot be made: " + error.message() : "is no folder");
+  if (file.empty()) return {};
+  return check_output_file((std::filesystem::path(folder) / file).string());
+}
+
 namespace {
 
 /// Empty for what is no file.

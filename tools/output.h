@@ -81,6 +81,8 @@ class Table {
 /// Whether a file can be made at `path`, before the long work: not a folder, its folder is there and
 /// writable.
 [[nodiscard]] Result<void> check_output_file(const std::string& path);
+/// Makes `folder` unless it is there; with `file`, also whether that can be made in it.
+[[nodiscard]] Result<void> make_folder(const std::string& folder, const std::string& file = "");
 /// A path and the option or argument that gave it; an empty path is no file.
 struct NamedPath {
   std::string option, path;

@@ -45,14 +45,6 @@ class IndexFile {
   Stopwatch between_;
 };
 
-Result<void> make_folder(const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder, error))
-    return fail(ErrorKind::io, folder, error ? "cannot be made: " + error.message() : "is no folder");
-  return {};
-}
-
 Result<ordered_json> make_one(const SweepRequest& r, const SweepPlan& plan, const SweepScene& scene) {
   GenerateRequest request = request_of(plan, scene);
   const std::string path = (fs::path(r.folder.empty() ? "." : r.folder) / scene.file).string();
@@ -130,7 +122,7 @@ std::string listing(const std::vector<ordered_json>& entries, Format format) {
   return table.str(format);
 }
 
-Result<void> say(const SweepRequest& r, const SweepPlan& plan, const Done& done, double seconds) {
+Result<void> say_made(const SweepRequest& r, const SweepPlan& plan, const Done& done, double seconds) {
   if (r.format == Format::json) return write_stdout(pretty(sweep_index(plan, done.entries)));
   if (r.format == Format::csv || r.dry_run) {
     if (auto written = write_stdout(listing(done.entries, r.format)); !written) return written;
@@ -167,7 +159,7 @@ Result<int> work(const SweepRequest& r) {
   }
   const Result<Done> done = make_all(r, *plan);
   if (!done) return tl::unexpected(done.error());
-  if (auto said = say(r, *plan, *done, watch.seconds()); !said) return forward_error(said);
+  if (auto said = say_made(r, *plan, *done, watch.seconds()); !said) return forward_error(said);
   return done->failed > 0 ? 1 : 0;
 }
 

@@ -54,11 +54,6 @@ Value in_flight_value(std::vector<std::uint32_t>& target) {
           }};
 }
 
-Result<void> not_empty(const std::string& text) {
-  if (text.empty()) return fail(ErrorKind::usage, "", "is empty");
-  return {};
-}
-
 /// Every strategy that there is: one that is new must not be forgotten.
 std::vector<BenchWay> all_ways() {
   std::vector<std::string> names;

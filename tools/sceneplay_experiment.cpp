@@ -32,19 +32,6 @@ struct ExperimentRequest {
   std::vector<std::string> arguments;
 };
 
-Result<void> not_empty(const std::string& text) {
-  if (text.empty()) return fail(ErrorKind::usage, "", "is empty");
-  return {};
-}
-
-Result<void> make_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder, error))
-    return fail(ErrorKind::io, folder, error ? "cannot be made: " + error.message() : "is no folder");
-  return check_output_file((std::filesystem::path(folder) / "experiment.json").string());
-}
-
 /// Runs what was asked for; what fails is said, and the rest goes on.
 class Laboratory {
  public:
@@ -52,7 +39,7 @@ class Laboratory {
       : request_(request), chosen_(std::move(chosen)), progress_("experiment", 0, request.quiet) {}
 
   Result<int> run() {
-    if (auto made = make_folder(request_.folder); !made) return forward_error(made);
+    if (auto made = make_folder(request_.folder, "experiment.json"); !made) return forward_error(made);
     if (auto ready = set_up(); !ready) return forward_error(ready);
     int code = 0;
     for (const Experiment* experiment : chosen_) {

@@ -69,14 +69,6 @@ std::string digits_of(std::size_t number) {
   return digits;
 }
 
-Result<void> make_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder, error))
-    return fail(ErrorKind::io, folder, error ? "cannot be made: " + error.message() : "is no folder");
-  return check_output_file((std::filesystem::path(folder) / "frame_00000.png").string());
-}
-
 /// The number in 00012, if `digits` is how a frame's number is written.
 std::optional<std::size_t> frame_number(std::string_view digits) {
   std::size_t number = 0;
@@ -342,7 +334,7 @@ Result<void> draw(const FramesRequest& request, const Options& options) {
   if (auto costs = set_costs(how, request.drawing.calibration, request.quiet); !costs) return costs;
   auto renderer = render::Renderer::create(scene, player, how);
   if (!renderer) return forward_error(renderer);
-  if (auto made = make_folder(request.folder); !made) return made;
+  if (auto made = make_folder(request.folder, "frame_00000.png"); !made) return made;
   if (auto writable = check_files(request); !writable) return writable;  // now also those in that folder
   std::size_t warned = 0;
   print_warnings(*renderer, warned, request.quiet);

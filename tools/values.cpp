@@ -123,6 +123,11 @@ Value on_off_value(bool& target) {
   return value;
 }
 
+Result<void> not_empty(const std::string& text) {
+  if (text.empty()) return fail(ErrorKind::usage, "", "is empty");
+  return {};
+}
+
 Value texts_value(std::vector<std::string>& target, std::string form, std::string range,
                   std::function<Result<void>(const std::string&)> check) {
   Value value{Value::Kind::text, std::move(form), std::move(range),

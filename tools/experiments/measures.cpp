@@ -64,6 +64,12 @@ std::string in_words(double ratio) {
   return text.data();
 }
 
+render::View first_camera(const ExperimentContext& context, const Scene& scene) {
+  const float aspect = static_cast<float>(context.width) / static_cast<float>(context.height);
+  return render::view_of_camera(scene.cameras.front(), scene.cameras.front().frame_from_camera.matrix(),
+                                aspect);
+}
+
 std::uint32_t repetitions(const ExperimentContext& context, std::uint32_t full, std::uint32_t quick) {
   return context.repeat.value_or(context.quick ? quick : full);
 }

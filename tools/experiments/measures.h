@@ -37,6 +37,8 @@ struct Spread {
 /// How often each case is measured.
 [[nodiscard]] std::uint32_t repetitions(const ExperimentContext& context, std::uint32_t full,
                                         std::uint32_t quick);
+/// What the scene's first camera sees, as it stands in the file, in pictures of the context's shape.
+[[nodiscard]] render::View first_camera(const ExperimentContext& context, const Scene& scene);
 /// What all drawing in experiments has in common: the context's device, size, samples and costs; no shadows,
 /// no picture read back.
 [[nodiscard]] render::RendererOptions drawing(const ExperimentContext& context);

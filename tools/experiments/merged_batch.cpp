@@ -14,12 +14,6 @@
 namespace scenegen::tools {
 namespace {
 
-render::View first_camera(const ExperimentContext& context, const Scene& scene) {
-  const float aspect = static_cast<float>(context.width) / static_cast<float>(context.height);
-  return render::view_of_camera(scene.cameras.front(), scene.cameras.front().frame_from_camera.matrix(),
-                                aspect);
-}
-
 /// A scene, the renderer that merges it, and what it is seen from.
 struct Subject {
   std::string name;

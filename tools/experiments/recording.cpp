@@ -19,12 +19,6 @@ namespace {
 
 using render::PassContext;
 
-render::View first_camera(const ExperimentContext& context, const Scene& scene) {
-  const float aspect = static_cast<float>(context.width) / static_cast<float>(context.height);
-  return render::view_of_camera(scene.cameras.front(), scene.cameras.front().frame_from_camera.matrix(),
-                                aspect);
-}
-
 /// Draws kept in secondary command buffers of `each`, recorded once.
 class KeptBuffers {
  public:

@@ -13,7 +13,7 @@
 namespace scenegen::tools {
 namespace {
 
-std::string number(double value) {
+std::string tenths(double value) {
   std::array<char, 32> buffer{};
   (void)std::snprintf(buffer.data(), buffer.size(), "%.1f", value);
   return buffer.data();
@@ -41,7 +41,7 @@ double strip_reach(const std::vector<Tally>& tallies) {
 }
 
 std::string strip_dot(const Comparison& comparison, double x, double y) {
-  const std::string place = number(x) + " " + number(y);
+  const std::string place = tenths(x) + " " + tenths(y);
   if (comparison.outcome == Outcome::worse)
     return "<path class=\"worse\" d=\"M" + place + "m-3 -3l6 6m0 -6l-6 6\"/>";
   return "<path class=\"" + std::string(comparison.outcome == Outcome::better ? "better" : "level") +
@@ -68,7 +68,7 @@ std::string strip_svg(const Tally& t, double reach) {
   std::string lines = "M0 12.0H300";
   std::string texts;
   const auto tick = [&](double factor, const std::string& text) {
-    const std::string x = number(place(factor));
+    const std::string x = tenths(place(factor));
     lines += "M" + x + " 0V24";
     texts += "<text class=\"tick middle\" x=\"" + x + "\" y=\"37\">" + text + "</text>";
   };

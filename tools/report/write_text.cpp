@@ -199,7 +199,7 @@ std::string way(const std::string& from, const std::string& to) {
 
 // ---- CSV -------------------------------------------------------------------------------------------------
 
-ordered_json cell_json(const Cell& cell) {
+ordered_json csv_cell(const Cell& cell) {
   if (const auto* figure = std::get_if<double>(&cell)) return *figure;
   if (const auto* text = std::get_if<std::string>(&cell)) return *text;
   return nullptr;
@@ -212,7 +212,7 @@ std::string table_csv(const DocumentTable& table) {
   for (const auto& row : table.rows) {
     std::vector<ordered_json> cells;
     cells.reserve(row.size());
-    for (const Cell& cell : row) cells.push_back(cell_json(cell));
+    for (const Cell& cell : row) cells.push_back(csv_cell(cell));
     out.row(std::move(cells));
   }
   return out.str(Format::csv);
