@@ -20,6 +20,8 @@ struct PlanCounters : StageTimes {
   std::uint64_t nodes = 0;              ///< octree nodes visited
   std::uint64_t tree_nodes = 0;         ///< nodes that the octree has
   std::uint64_t chunks = 0;             ///< of the octree, in the frustum
+  std::uint64_t refreshed_chunks = 0;   ///< of the octree, in which something changed
+  std::uint64_t refreshed_slots = 0;    ///< of those whose boxes and sums were made anew
   std::uint64_t secondaries = 0;        ///< kept command buffers executed, in all passes but the shadows'
   std::uint64_t recorded = 0;           ///< kept chunks recorded, or written for indirect draws, anew
   std::uint64_t recorded_draws = 0;     ///< slots that those draw

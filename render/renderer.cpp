@@ -18,6 +18,7 @@
 #include "render/passes/targets.h"
 #include "render/strategy/octree_choice.h"
 #include "render/strategy/strategy.h"
+#include "render/strategy/touched_chunks.h"
 
 namespace scenegen::render {
 namespace {
@@ -70,7 +71,7 @@ struct Renderer::State {
             false,
             options.shadows && options.outputs.color};
   }
-  void predict(FrameReport& report) const;
+  void predict(const timeline::ChangeSet& changes, FrameReport& report) const;
   void finish(FrameResult& out);
   /// Runs `body`; what it throws becomes an error, now and in every later call.
   template <class Body>
@@ -261,7 +262,7 @@ void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline:
   report.record_ms = ms_since(start);
   if (options.predictions) {  // before the device begins: it must not work meanwhile
     const StageTimer timer(report.predict_ms);
-    predict(report);
+    predict(changes, report);
   }
 
   start = Clock::now();
@@ -282,7 +283,7 @@ void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline:
 }
 
 /// What every way of drawing would have cost; what the one that was taken did not find out is estimated.
-void Renderer::State::predict(FrameReport& report) const {
+void Renderer::State::predict(const timeline::ChangeSet& changes, FrameReport& report) const {
   model::FrameFacts facts = strategy->facts();
   facts.changed = static_cast<double>(report.changed);
   if (options.shadows && options.outputs.color) {
@@ -290,7 +291,8 @@ void Renderer::State::predict(FrameReport& report) const {
     facts.shadow_vertices = facts.visible.vertices;
   }
   const StrategyContext context = strategy_context();
-  model::Experience{}.fill_unknown(facts, choose_objects_per_node(context).value_or(kObjectsPerNode), 0.0);
+  const std::uint32_t per_node = choose_objects_per_node(context).value_or(kObjectsPerNode);
+  model::Experience{}.fill_unknown(facts, per_node, ChunksTouched(*scene, per_node).count(changes));
   model::PredictionOptions how;
   how.frames_in_flight = options.frames_in_flight;
   how.indirect_nodes = indirect_nodes(context);

@@ -21,22 +21,30 @@ class Runs {
  public:
   Runs(const CalibrationOptions& options, std::shared_ptr<vkr::Device> device, bool software)
       : options_(options), device_(std::move(device)) {
-    test_ = calibration::make_test_scene(calibration::test_sizes(software, options.quick), options.size);
+    const calibration::TestSizes sizes = calibration::test_sizes(software, options.quick);
+    test_ = calibration::make_test_scene(sizes, options.size);
+    only_boxes_ = calibration::make_test_scene(sizes, options.size, calibration::TestContents::only_boxes);
     calibration::TestSizes few;
     few.boxes = {1, 2};
     few_ = calibration::make_test_scene(few, options.size);
     budget_s_ = options.budget_s > 0.0 ? options.budget_s : options.quick ? 8.0 : software ? 75.0 : 15.0;
     how_.longest_frame_s = software ? 0.5 : 0.05;
+    // A round of large pictures takes a software device half of the budget.
+    if (software) how_.least_rounds = 1;
     if (options.quick) how_.least_rounds = 1, how_.frames = 1;
+    // Rasterizing goes on as it began; what the processor does takes a frame to get going.
+    settle_ = options.quick ? 0 : 1;
+    settle_flat_ = software ? 0 : settle_;
   }
 
   /// From now on.
   void use(NodeForm form) { form_ = form; }
+  void only_boxes() { scene_ = &only_boxes_; }
 
   template <class Wanted>
   Result<Run> run(const char* strategy, std::uint32_t per_node, bool shadows, double share,
                   const Wanted& wanted) {
-    return run_on(test_, strategy, per_node, shadows, share, wanted);
+    return run_on(*scene_, strategy, per_node, shadows, share, wanted);
   }
   /// Of a scene of two boxes.
   template <class Wanted>
@@ -60,10 +68,11 @@ class Runs {
     o.predictions = std::string_view(strategy) == "inline";  // for what the model is told of the scenes
     MeasureOptions how = how_;
     how.budget_s = budget_s_ * share;
-    how.settle = std::string_view(strategy).find("queries") != std::string_view::npos ? 3
-                 : std::string_view(strategy) == "hi-z"                               ? 2
-                 : options_.quick                                                     ? 0
-                                                                                      : 1;
+    const std::string_view name(strategy);
+    how.settle = name.find("queries") != std::string_view::npos ? 3
+                 : name == "hi-z"                               ? 2
+                 : name == "inline"                             ? settle_flat_
+                                                                : settle_;
     how.progress = [&](double part) {
       if (options_.progress) options_.progress(std::min(1.0, done_ + share * part));
     };
@@ -76,15 +85,17 @@ class Runs {
 
   const CalibrationOptions& options_;
   std::shared_ptr<vkr::Device> device_;
-  TestScene test_, few_;
+  TestScene test_, only_boxes_, few_;
+  const TestScene* scene_ = &test_;
   MeasureOptions how_;
+  std::size_t settle_ = 1, settle_flat_ = 1;
   NodeForm form_ = NodeForm::secondaries;
   double budget_s_ = 0;
   double done_ = 0;
 };
 
-/// Costs of queries and of what is kept, as differences to drawing without.
-Result<void> measure_octrees(Runs& runs, const Run& flat, bool quick, Fit& fit) {
+/// Costs of queries and of what is kept, as differences to drawing without. `all`: where walls were drawn.
+Result<void> measure_octrees(Runs& runs, const Run& flat, const Run& all, bool quick, Fit& fit) {
   const auto boxes = [](const Step& s) {
     return s.trial == Trial::empty || s.trial == Trial::boxes || s.trial == Trial::halved_boxes;
   };
@@ -94,12 +105,15 @@ Result<void> measure_octrees(Runs& runs, const Run& flat, bool quick, Fit& fit) 
       quick ? std::vector<std::uint32_t>{kAsked} : std::vector<std::uint32_t>{10, kAsked, 1000};
   for (const std::uint32_t n : sizes) {
     Result<Run> run = runs.run("octree", n, false, quick ? 0.2 : 0.09, [&](const Step& s) {
-      return boxes(s) || (n == kAsked && s.trial == Trial::hidden_boxes);
+      return boxes(s) || (n == kAsked && calibration::few_change(s)) ||
+             (n == kAsked && s.trial == Trial::hidden_boxes);
     });
     if (!run) return forward_error(run);
     kept.emplace_back(n, std::move(*run));
   }
   fit.kept(flat, kept);
+  const auto same = std::find_if(kept.begin(), kept.end(), [](const auto& k) { return k.first == kAsked; });
+  fit.octree_updates(kept.front(), *same);
   fit.command_memory(kept);
   Result<Run> each = runs.run("inline-queries", 0, false, quick ? 0.1 : 0.06,
                               [&](const Step& s) { return boxes(s) || s.trial == Trial::hidden_boxes; });
@@ -108,8 +122,7 @@ Result<void> measure_octrees(Runs& runs, const Run& flat, bool quick, Fit& fit) 
     return s.trial == Trial::empty || s.trial == Trial::hidden_boxes;
   });
   if (!asking) return forward_error(asking);
-  fit.queries(flat, *each);
-  const auto same = std::find_if(kept.begin(), kept.end(), [](const auto& k) { return k.first == kAsked; });
+  fit.queries(flat, *each, all);
   fit.second_part(same->second, *asking);
   if (quick) return {};
   runs.use(NodeForm::indirect);
@@ -155,12 +168,15 @@ Result<Calibration> calibrate(const CalibrationOptions& options) {
   Runs runs(options, *device, software);
   Fit fit(out, static_cast<double>(options.size.x) * options.size.y);
 
-  const auto drawn = [](const Step& s) { return s.trial != Trial::hidden_boxes; };
+  const auto drawn = [](const Step& s) {
+    return s.trial != Trial::hidden_boxes && !calibration::few_change(s);
+  };
   const auto boxes = [](const Step& s) { return s.trial == Trial::empty || s.trial == Trial::boxes; };
   const double flat_share = !options.shadows ? 0.0 : options.quick ? 0.1 : 0.11;
   const double first = (options.quick ? 0.56 : 0.42) - flat_share;
   Result<Run> with = runs.run("inline", 0, options.shadows, first, drawn);
   if (!with) return forward_error(with);
+  runs.only_boxes();
   // Differences to the other strategies are taken without shadows.
   Result<Run> flat = options.shadows ? runs.run("inline", 0, false, flat_share, boxes) : Result<Run>(*with);
   if (!flat) return forward_error(flat);
@@ -170,7 +186,8 @@ Result<Calibration> calibrate(const CalibrationOptions& options) {
   // Recording is what it is without the shadows' pass, which has a cost of its own.
   if (options.shadows) out.costs.record_s = std::max(0.0, out.costs.record_s - out.costs.shadow_slot_s);
   if (Result<void> done = measure_hi_z(runs, *flat, fit); !done) return forward_error(done);
-  if (Result<void> done = measure_octrees(runs, *flat, options.quick, fit); !done) return forward_error(done);
+  if (Result<void> done = measure_octrees(runs, *flat, *with, options.quick, fit); !done)
+    return forward_error(done);
   fit.finish();
   return out;
 }

@@ -16,7 +16,7 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr std::string_view kSchema = "sceneplay/calibration";
-constexpr int kVersion = 3;
+constexpr int kVersion = 4;
 constexpr std::size_t kMostPoints = 64;      // of a curve
 constexpr std::size_t kMostBytes = 1 << 20;  // a file has 5 kB
 constexpr double kMostUnitBytes = 1e9;
@@ -179,7 +179,8 @@ Result<Calibration> parse_calibration(std::string_view text, const std::string& 
   if (const std::string schema = in.text("schema"); !in.error() && schema != kSchema)
     in.bad("schema", "must be '" + std::string(kSchema) + "': this is no calibration");
   if (const double version = in.number("version", 0, 1e9); !in.error() && version != kVersion)
-    in.bad("version", "this program reads version 3; run sceneplay calibrate again");
+    in.bad("version",
+           "this program reads version " + std::to_string(kVersion) + "; run sceneplay calibrate again");
   Calibration out;
   out.key.device_uuid = in.text("deviceUuid");
   out.key.device = in.text("device");

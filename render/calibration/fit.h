@@ -38,6 +38,9 @@ struct Run {
   }
 };
 
+/// A run of `octree`, with objects a node.
+using Octrees = std::pair<std::uint32_t, Run>;
+
 /// Takes costs from runs; remembers which came out negative.
 class Fit {
  public:
@@ -46,10 +49,12 @@ class Fit {
   void inline_run(const Run& run);
   void shadows(const Run& with, const Run& without);
   /// Runs of `octree` by objects a node, ascending.
-  void kept(const Run& flat, const std::vector<std::pair<std::uint32_t, Run>>& runs);
-  void command_memory(const std::vector<std::pair<std::uint32_t, Run>>& runs);
+  void kept(const Run& flat, const std::vector<Octrees>& runs);
+  /// `fine`: of small nodes; `spread`: where few changed, in many nodes.
+  void octree_updates(const Octrees& fine, const Octrees& spread);
+  void command_memory(const std::vector<Octrees>& runs);
   void listed(const Run& run);
-  void queries(const Run& flat, const Run& each);
+  void queries(const Run& flat, const Run& each, const Run& walls);
   void second_part(const Run& kept, const Run& asking);
   void indirect(const Run& flat, const Run& fine, const Run& coarse);
   /// Runs of `hi-z`: of the scene that `flat` drew, and of one of a few objects.
@@ -67,8 +72,8 @@ class Fit {
   void piles(const Run& run);
   void overlaps(const Run& run);
   void meshes(const Run& run);
-  void walking(const Run& flat, const std::vector<std::pair<std::uint32_t, Run>>& runs);
-  void executing(const Run& flat, const std::vector<std::pair<std::uint32_t, Run>>& runs);
+  void walking(const std::vector<Octrees>& runs);
+  void executing(const Run& flat, const std::vector<Octrees>& runs);
   [[nodiscard]] double geometry_s(const Run& run, std::size_t i) const;
   model::Curve layers(const Run& run, Trial trial) const;
 

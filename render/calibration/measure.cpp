@@ -20,6 +20,28 @@ struct Samples {
   std::vector<double> periods, leave;
 };
 
+/// What the first frame takes is of interest, or what is left for the empty one after them.
+bool from_empty(Trial trial) {
+  switch (trial) {
+    case Trial::empty:
+    case Trial::boxes:
+    case Trial::hidden_boxes:
+    case Trial::halved_boxes:
+    case Trial::thinned_boxes:
+    case Trial::refilled_boxes:
+      return true;
+    case Trial::textured_boxes:
+    case Trial::unshared_meshes:
+    case Trial::meshes:
+    case Trial::textured_meshes:
+    case Trial::layers:
+    case Trial::textured_layers:
+    case Trial::piles:
+      break;
+  }
+  return false;
+}
+
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -33,32 +55,33 @@ Stages medians(const std::vector<Stages>& all) {
     std::transform(all.begin(), all.end(), values.begin(), [&](const Stages& s) { return s.*stage; });
     return median(std::move(values));
   };
-  return {of(&Stages::update_s), of(&Stages::plan_s),     of(&Stages::record_s),
-          of(&Stages::device_s), of(&Stages::readback_s), of(&Stages::gpu_s)};
+  return {of(&Stages::update_s), of(&Stages::update_octree_s), of(&Stages::plan_s),     of(&Stages::record_s),
+          of(&Stages::keep_s),   of(&Stages::device_s),        of(&Stages::readback_s), of(&Stages::gpu_s)};
 }
 
 class Measuring {
  public:
-  Measuring(const TestScene& test, const MeasureOptions& how, timeline::Player player, Renderer renderer)
+  Measuring(const TestScene& test, const MeasureOptions& how, Clock::time_point start,
+            timeline::Player player, Renderer renderer)
       : test_(test),
         how_(how),
+        start_(start),
         player_(std::move(player)),
         renderer_(std::move(renderer)),
         samples_(test.steps.size()),
         results_(test.steps.size()) {}
 
   Result<std::vector<Measured>> run(const std::function<bool(const Step&)>& wanted) {
-    const auto start = Clock::now();
     for (std::size_t round = 0; round < how_.most_rounds; ++round) {
-      if (round >= how_.least_rounds && seconds_since(start) >= how_.budget_s) break;
       for (std::size_t i = 0; i < test_.steps.size(); ++i) {
+        if (round >= how_.least_rounds && spent() >= 1.0) break;
         if (!wanted(test_.steps[i]) || too_long(i)) continue;
         if (Result<void> done = visit(i); !done) return forward_error(done);
       }
       if (how_.progress)
-        how_.progress(
-            std::min(1.0, std::max(seconds_since(start) / how_.budget_s,
-                                   static_cast<double>(round + 1) / static_cast<double>(how_.most_rounds))));
+        how_.progress(std::min(
+            1.0, std::max(spent(), static_cast<double>(round + 1) / static_cast<double>(how_.most_rounds))));
+      if (round + 1 >= how_.least_rounds && spent() >= 1.0) break;
     }
     for (const std::string& message : renderer_.take_validation_messages())
       return fail(ErrorKind::no_device, "validation", message);
@@ -75,9 +98,13 @@ class Measuring {
   }
 
  private:
+  /// Share of the budget.
+  [[nodiscard]] double spent() const { return seconds_since(start_) / how_.budget_s; }
+
   /// By the step of the same trial before it, which has about a quarter of the work.
   [[nodiscard]] bool too_long(std::size_t i) const {
     const Step& step = test_.steps[i];
+    if (step.from != 0 && samples_[step.from].steady.empty()) return true;
     for (std::size_t k = i; k-- > 0;) {
       const Step& other = test_.steps[k];
       if (other.trial != step.trial || other.draws >= step.draws || other.vertices != step.vertices) continue;
@@ -94,8 +121,9 @@ class Measuring {
     if (Result<void> done = renderer_.finish(result_); !done) return done;
     const FrameReport& r = result_.report;
     if (keep != nullptr)
-      keep->push_back({r.update_ms * 1e-3, r.plan_ms * 1e-3, (r.record_ms + r.submit_ms) * 1e-3,
-                       r.wait_ms * 1e-3, r.readback_ms * 1e-3, r.gpu_ms < 0.0 ? -1.0 : r.gpu_ms * 1e-3});
+      keep->push_back({r.update_ms * 1e-3, r.update_octree_ms * 1e-3, r.plan_ms * 1e-3,
+                       (r.record_ms + r.submit_ms) * 1e-3, r.keep_ms * 1e-3, r.wait_ms * 1e-3,
+                       r.readback_ms * 1e-3, r.gpu_ms < 0.0 ? -1.0 : r.gpu_ms * 1e-3});
     if (report != nullptr) *report = r;
     return {};
   }
@@ -116,10 +144,15 @@ class Measuring {
 
   Result<void> visit(std::size_t i) {
     const double time_s = test_.steps[i].time_s;
-    empty_.clear();
-    if (Result<void> done = frame(test_.steps.front().time_s, &empty_, nullptr); !done) return done;
-    if (last_) samples_[*last_].leave.push_back(empty_.front().record_s);
+    if (from_empty(test_.steps[i].trial)) {
+      empty_.clear();
+      if (Result<void> done = frame(test_.steps.front().time_s, &empty_, nullptr); !done) return done;
+      if (last_) samples_[*last_].leave.push_back(empty_.front().record_s);
+    }
     last_ = i;
+    if (const std::uint32_t from = test_.steps[i].from; from != 0) {
+      if (Result<void> done = frame(test_.steps[from].time_s, nullptr, nullptr); !done) return done;
+    }
     Result<void> done = frame(time_s, &samples_[i].first, &results_[i].first_report);
     for (std::size_t k = 0; done && k < how_.settle; ++k) done = frame(time_s, nullptr, nullptr);
     for (std::size_t k = 0; done && k < how_.frames; ++k)
@@ -132,6 +165,7 @@ class Measuring {
 
   const TestScene& test_;
   const MeasureOptions& how_;
+  Clock::time_point start_;
   timeline::Player player_;
   Renderer renderer_;
   std::vector<Samples> samples_;
@@ -146,11 +180,12 @@ class Measuring {
 Result<std::vector<Measured>> measure(const TestScene& test, const RendererOptions& options,
                                       const MeasureOptions& how,
                                       const std::function<bool(const Step&)>& wanted) {
+  const auto start = Clock::now();
   timeline::Player player(timeline::compile(test.scene));
   player.seek(0.0);
   Result<Renderer> renderer = Renderer::create(test.scene, player, options);
   if (!renderer) return forward_error(renderer);
-  return Measuring(test, how, std::move(player), std::move(*renderer)).run(wanted);
+  return Measuring(test, how, start, std::move(player), std::move(*renderer)).run(wanted);
 }
 
 Line fit_line(const std::vector<double>& x, const std::vector<double>& y) {

@@ -14,8 +14,10 @@ namespace scenegen::render::calibration {
 /// Medians over frames, seconds.
 struct Stages {
   double update_s = 0;
+  double update_octree_s = 0;  ///< of it
   double plan_s = 0;
   double record_s = 0;  ///< and submitting
+  double keep_s = 0;    ///< of it recording what is kept, and finding what was
   double device_s = 0;  ///< what the processor waits for one frame, nothing else in flight
   double readback_s = 0;
   double gpu_s = -1;  ///< between the frame's timestamps; -1: none
@@ -24,7 +26,7 @@ struct Stages {
 
 struct Measured {
   Stages steady;              ///< of frames that are like the one before
-  Stages first;               ///< of frames that come from the empty step
+  Stages first;               ///< of frames that come from the empty step, or Step::from
   double leave_record_s = 0;  ///< of the empty frame after them: what is read late is read there
   double period_s = 0;        ///< from frame to frame, two in flight; 0: not measured
   FrameReport report;         ///< counts of a steady frame
@@ -34,7 +36,8 @@ struct Measured {
 };
 
 struct MeasureOptions {
-  double budget_s = 5;  ///< rounds over all steps begin as long as this is not spent
+  /// Steps are measured as long as this is not spent, setting up included, and each in `least_rounds`.
+  double budget_s = 5;
   std::size_t least_rounds = 3, most_rounds = 40;
   std::size_t settle = 1;  ///< frames after the first one until they are steady
   std::size_t frames = 2;  ///< steady ones a round
@@ -45,8 +48,8 @@ struct MeasureOptions {
 };
 
 /// One result a step, in their order; `samples` 0: left out. Steps are visited in turn, so what disturbs the
-/// machine for a while disturbs all alike; each is come to from the empty step. `wanted` says which are
-/// measured.
+/// machine for a while disturbs all alike; those of boxes are come to from the empty step. `wanted` says
+/// which are measured.
 [[nodiscard]] Result<std::vector<Measured>> measure(const TestScene& test, const RendererOptions& options,
                                                     const MeasureOptions& how,
                                                     const std::function<bool(const Step&)>& wanted);

@@ -116,7 +116,8 @@ Image checker() {
 
 class Builder {
  public:
-  Builder(const TestSizes& sizes, glm::uvec2 size) : sizes_(sizes), size_(size) {
+  Builder(const TestSizes& sizes, glm::uvec2 size, TestContents contents)
+      : sizes_(sizes), size_(size), all_(contents == TestContents::all) {
     Lens lens;
     lens.yfov_rad = kFovRad;
     out_.view = make_view(glm::mat4(1.0F), lens, static_cast<float>(size.x) / static_cast<float>(size.y));
@@ -190,15 +191,20 @@ class Builder {
     out_.scene.objects.add("o" + std::to_string(out_.scene.objects.size()), mesh, t);
   }
   template <class Body>
-  std::size_t group(const Body& add_objects) {
+  std::size_t group(const Body& add_objects, bool wanted = true) {
     Group g;
     g.first = static_cast<std::uint32_t>(out_.scene.objects.size());
-    add_objects();
+    if (wanted) add_objects();
     g.end = static_cast<std::uint32_t>(out_.scene.objects.size());
     groups_.push_back(std::move(g));
     return groups_.size() - 1;
   }
   void show(std::size_t group, std::uint32_t step) { groups_[group].steps.push_back(step); }
+  /// A step of other things than boxes.
+  template <class Body>
+  void other(const Step& step, const Body& add_objects) {
+    show(group(add_objects, all_), begin(step));
+  }
 
   /// The i-th of `count` places of a grid over most of the picture; objects of `side_m`.
   [[nodiscard]] glm::vec3 place(std::uint32_t i, std::uint32_t count, float distance_m) const {
@@ -233,15 +239,33 @@ class Builder {
     std::vector<std::size_t> nested;
     std::uint32_t before = 0;
     for (const std::uint32_t n : sizes_.boxes) {
-      nested.push_back(group([&] { small(boxes_.plain, before, n, most); }));
+      std::uint32_t taken = 0;  // away later
+      const auto add = [&](bool thinned) {
+        for (std::uint32_t i = before; i < n; ++i) {
+          if ((n == most && i % kThinned == 0) != thinned) continue;
+          small(boxes_.plain, i, i + 1, most);
+          taken += thinned ? 1 : 0;
+        }
+      };
+      nested.push_back(group([&] { add(false); }));
+      const std::vector<std::size_t> kept = nested;
+      if (n == most) nested.push_back(group([&] { add(true); }));
       before = n;
       const std::uint32_t seen = begin({Trial::boxes, n, 36});
+      if (n == most) {  // next in time: nothing else changes
+        const std::uint32_t thinned = begin({Trial::thinned_boxes, n - taken, 36});
+        out_.steps[thinned].from = seen;
+        for (const std::size_t g : kept) show(g, thinned);
+        const std::uint32_t refilled = begin({Trial::refilled_boxes, n, 36});
+        out_.steps[refilled].from = thinned;
+        for (const std::size_t g : nested) show(g, refilled);
+      }
       const std::uint32_t behind = begin({Trial::hidden_boxes, n, 36, 1, 1.0});
       show(wall, behind);
       for (const std::size_t g : nested) show(g, seen), show(g, behind);
     }
     const std::uint32_t n = sizes_.boxes[sizes_.boxes.size() / 2];
-    show(group([&] { small(boxes_.textured, 0, n, n); }), begin({Trial::textured_boxes, n, 36}));
+    other({Trial::textured_boxes, n, 36}, [&] { small(boxes_.textured, 0, n, n); });
     // Every other one is moved out of the picture, beyond its side.
     const float aside =
         2.0F * height_m(kDistanceM) * static_cast<float>(size_.x) / static_cast<float>(size_.y);
@@ -250,14 +274,12 @@ class Builder {
 
   void add_meshes() {
     for (const std::uint32_t vertices : sizes_.vertices) {
-      Pair mesh;
+      Geometry geometry = quad_geometry(true);
       std::uint32_t each = 3;
-      if (vertices <= 3) {
-        mesh = add_geometry(quad_geometry(true));
-      } else {
+      if (vertices > 3) {
         const auto stacks = static_cast<std::uint32_t>(std::max(2.0, std::sqrt(vertices / 12.0)));
         const std::uint32_t slices = std::max(3U, vertices / (6 * (stacks - 1)));
-        mesh = add_geometry(sphere_geometry(slices, stacks));
+        geometry = sphere_geometry(slices, stacks);
         each = 6 * slices * (stacks - 1);
       }
       const std::uint32_t n =
@@ -268,18 +290,15 @@ class Builder {
                                          : n * glm::quarter_pi<double>() * side * side /
                                                (static_cast<double>(size_.x) * size_.y);
       if (share > 0.5) continue;  // too small a picture for these
-      if (vertices <= 3) {
-        show(group([&] { small(mesh.plain, 0, n, n, 0.0F, side); }),
-             begin({Trial::unshared_meshes, n, each, 1, share}));
-        continue;
-      }
-      const Pair unshared = add_geometry(without_indices(out_.scene.geometries.back()));
-      show(group([&] { small(unshared.plain, 0, n, n, 0.0F, side); }),
-           begin({Trial::unshared_meshes, n, each, 1, share}));
-      if (vertices != sizes_.vertices.back()) continue;
-      show(group([&] { small(mesh.plain, 0, n, n, 0.0F, side); }), begin({Trial::meshes, n, each, 1, share}));
-      show(group([&] { small(unshared.textured, 0, n, n, 0.0F, side); }),
-           begin({Trial::textured_meshes, n, each, 1, share}));
+      const auto many = [&](Trial trial, MeshId mesh) {
+        other({trial, n, each, 1, share}, [&] { small(mesh, 0, n, n, 0.0F, side); });
+      };
+      const Pair unshared =
+          all_ ? add_geometry(vertices <= 3 ? geometry : without_indices(geometry)) : boxes_;
+      many(Trial::unshared_meshes, unshared.plain);
+      if (vertices <= 3 || vertices != sizes_.vertices.back()) continue;
+      many(Trial::meshes, all_ ? add_geometry(std::move(geometry)).plain : boxes_.plain);
+      many(Trial::textured_meshes, unshared.textured);
     }
   }
 
@@ -292,15 +311,15 @@ class Builder {
 
   /// One layer, and several, each in front of the one before.
   void layers(Trial trial, MeshId mesh, double share) {
-    const std::size_t first = group([&] { quad(mesh, share, kWallM - 20.0F); });
+    const std::size_t first = group([&] { quad(mesh, share, kWallM - 20.0F); }, all_);
     show(first, begin({trial, 1, 6, 1, share}));
     const std::uint32_t more = begin({trial, sizes_.layers, 6, static_cast<double>(sizes_.layers), share});
     show(first, more);
-    show(group([&] {
-           for (std::uint32_t i = 1; i < sizes_.layers; ++i)
-             quad(mesh, share, kWallM - 20.0F - static_cast<float>(i));
-         }),
-         more);
+    const auto in_front = [&] {
+      for (std::uint32_t i = 1; i < sizes_.layers; ++i)
+        quad(mesh, share, kWallM - 20.0F - static_cast<float>(i));
+    };
+    show(group(in_front, all_), more);
   }
 
   /// Boxes of one size, anywhere, as scenes have them: what is in front comes before or after what is behind.
@@ -313,16 +332,14 @@ class Builder {
       const std::uint32_t n = sizes_.boxes[i];
       for (const double layers : sizes_.piles) {
         const float side = std::sqrt(static_cast<float>(layers) * h * h * aspect / static_cast<float>(n));
-        const std::uint32_t step = begin({Trial::piles, n, 36, layers, 0.64});
-        show(group([&] {
-               for (std::uint32_t k = 0; k < n; ++k) {
-                 const auto around = [&] { return random.unit(number++) - 0.5F; };
-                 const float x = around(), y = around(), z = around();
-                 object(boxes_.plain, {x * h * aspect, y * h, -kDistanceM + 0.4F * kDistanceM * z},
-                        glm::vec3(side));
-               }
-             }),
-             step);
+        other({Trial::piles, n, 36, layers, 0.64}, [&] {
+          for (std::uint32_t k = 0; k < n; ++k) {
+            const auto around = [&] { return random.unit(number++) - 0.5F; };
+            const float x = around(), y = around(), z = around();
+            object(boxes_.plain, {x * h * aspect, y * h, -kDistanceM + 0.4F * kDistanceM * z},
+                   glm::vec3(side));
+          }
+        });
       }
     }
   }
@@ -349,6 +366,7 @@ class Builder {
 
   const TestSizes& sizes_;
   glm::uvec2 size_;
+  bool all_;
   TestScene out_;
   Pair quads_, boxes_;
   std::vector<Group> groups_;
@@ -377,8 +395,8 @@ TestSizes test_sizes(bool software_device, bool quick) {
   return s;
 }
 
-TestScene make_test_scene(const TestSizes& sizes, glm::uvec2 size) {
-  return Builder(sizes, size).build();
+TestScene make_test_scene(const TestSizes& sizes, glm::uvec2 size, TestContents contents) {
+  return Builder(sizes, size, contents).build();
 }
 
 }  // namespace scenegen::render::calibration

@@ -25,7 +25,12 @@ enum class Trial : std::uint8_t {
   piles,            ///< `draws` boxes anywhere over `share` of the picture, `layers` deep, in any order
   hidden_boxes,     ///< a wall over the whole picture with `draws` boxes behind it
   halved_boxes,     ///< `draws` boxes, half of them beside the picture
+  thinned_boxes,    ///< the most `boxes` without every kThinned-th; come to from them
+  refilled_boxes,   ///< these again; come to from thinned_boxes
 };
+
+/// Of boxes that are taken away: one in each chunk or so.
+constexpr std::uint32_t kThinned = 64;
 
 /// A test scene: visible from `time_s` until the next one's.
 struct Step {
@@ -35,7 +40,13 @@ struct Step {
   double layers = 0;
   double share = 0;  ///< of the picture that is covered
   double time_s = 0;
+  std::uint32_t from = 0;  ///< step that it is come to from; 0: the empty one
 };
+
+/// One in kThinned boxes does.
+[[nodiscard]] inline bool few_change(const Step& step) {
+  return step.trial == Trial::thinned_boxes || step.trial == Trial::refilled_boxes;
+}
 
 struct TestScene {
   Scene scene;
@@ -56,6 +67,9 @@ struct TestSizes {
 
 /// What 2.5.4 and 4.2 ask for, for pictures of `size`. `quick`: fewer sizes.
 [[nodiscard]] TestSizes test_sizes(bool software_device, bool quick);
-[[nodiscard]] TestScene make_test_scene(const TestSizes& sizes, glm::uvec2 size);
+/// `only_boxes`: the same steps, of which those of other things are empty: a smaller scene to set up.
+enum class TestContents : std::uint8_t { all, only_boxes };
+[[nodiscard]] TestScene make_test_scene(const TestSizes& sizes, glm::uvec2 size,
+                                        TestContents contents = TestContents::all);
 
 }  // namespace scenegen::render::calibration

@@ -91,7 +91,7 @@ void Experience::fill_seen(FrameFacts& f) const {
       std::min(f.in_frustum.fragments, std::max(share_seen * f.in_frustum.fragments, 1.5 * covered));
 }
 
-void Experience::fill_octree(FrameFacts& f, std::uint32_t per_node, double chunks_touched) const {
+void Experience::fill_octree(FrameFacts& f, std::uint32_t per_node, const TouchedChunks& touched) const {
   const auto objects = static_cast<std::uint64_t>(std::max(0.0, f.visible_slots));
   f.height = octree_height(objects, per_node);
   const double nodes = octree_nodes(objects, per_node);  // (3.2), of the whole scene
@@ -105,8 +105,10 @@ void Experience::fill_octree(FrameFacts& f, std::uint32_t per_node, double chunk
   if (f.in_chunks.draws <= 0.0) f.chunks = 0.0;
   f.nodes_visited = visits_ * f.chunks + f.height;
   f.boxes_tested = tests_ * f.chunks + f.height;
-  f.chunks_rerecorded = std::min(f.chunks, chunks_touched * seen);
+  f.chunks_rerecorded = std::min(f.chunks, touched.recorded * seen);
   f.draws_rerecorded = std::min(f.in_chunks.draws, f.chunks_rerecorded * c_n);
+  f.chunks_refreshed = touched.changed;
+  f.slots_refreshed = std::min(f.visible_slots, touched.left * c_n);
 }
 
 void Experience::fill_queries(FrameFacts& f) const {
@@ -133,10 +135,10 @@ void Experience::fill_queries(FrameFacts& f) const {
   f.asked_fragments = 1.2 * f.hidden.fragments;
 }
 
-void Experience::fill_unknown(FrameFacts& f, std::uint32_t per_node, double chunks_touched) const {
+void Experience::fill_unknown(FrameFacts& f, std::uint32_t per_node, const TouchedChunks& touched) const {
   if (!f.exact_inline && f.exact_octree && f.in_frustum.draws <= 0.0)
     f.in_frustum = scaled(f.in_chunks, 1.0 / excess_);
-  if (!f.exact_octree) fill_octree(f, per_node, chunks_touched);
+  if (!f.exact_octree) fill_octree(f, per_node, touched);
   if (f.commands_per_draw <= 0.0) f.commands_per_draw = commands_per_draw_;
   if (f.runs_per_chunk <= 0.0) f.runs_per_chunk = runs_per_chunk_;
   if (!f.exact_queries) fill_queries(f);

@@ -26,17 +26,24 @@ class SlowMean {
 /// things are taken to fall evenly into an unknown number of places.
 [[nodiscard]] double different_among(double count, double sampled, double different);
 
+/// Chunks of the whole octree that changes of a frame touch.
+struct TouchedChunks {
+  double recorded = 0;  ///< something in them appeared, vanished or changed its look
+  double changed = 0;   ///< or moved
+  double left = 0;      ///< something in them vanished or moved: boxes and sums are made anew
+};
+
 /// Ratios that were seen, and fill_unknown() makes counts of.
 class Experience {
  public:
   /// Takes the exact parts of facts in.
   void learn(const FrameFacts& facts);
   /// Fills the parts that are not exact: the octree's by (3.1), (3.2), (3.14), (3.15) for nodes of `per_node`
-  /// objects, with as many chunks recorded again as `chunks_touched` (in the whole scene).
-  void fill_unknown(FrameFacts& facts, std::uint32_t per_node, double chunks_touched) const;
+  /// objects.
+  void fill_unknown(FrameFacts& facts, std::uint32_t per_node, const TouchedChunks& touched) const;
 
  private:
-  void fill_octree(FrameFacts& facts, std::uint32_t per_node, double chunks_touched) const;
+  void fill_octree(FrameFacts& facts, std::uint32_t per_node, const TouchedChunks& touched) const;
   void fill_queries(FrameFacts& facts) const;
   void fill_seen(FrameFacts& facts) const;
 

@@ -22,7 +22,8 @@ double update_scene_s(const FrameCounts& n, const TimeUnits& t) {
   return n.changed_share * n.objects * t.update;
 }
 double update_octree_s(const FrameCounts& n, const TimeUnits& t) {
-  return n.moved_share * n.objects * n.height * t.intersect;
+  return n.moved_share * n.objects * n.height * t.intersect + n.refreshed_chunks * t.refresh_chunk +
+         n.refreshed_slots * t.refresh_slot;
 }
 double traverse_s(const FrameCounts& n, const TimeUnits& t) {
   return n.nodes * t.traverse;

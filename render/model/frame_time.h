@@ -14,6 +14,8 @@ namespace scenegen::render::model {
 struct TimeUnits {
   double update = 0;                      ///< t_upd: writing an object's properties
   double intersect = 0;                   ///< t_intersect: one level of moving an object in the octree
+  double refresh_chunk = 0;               ///< bringing a chunk of the octree, and the nodes above, up to date
+  double refresh_slot = 0;                ///< making boxes and sums of one anew, from a slot
   double traverse = 0;                    ///< t_trav: visiting a node
   double cull_object = 0, cull_node = 0;  ///< t_fc: culling one
   double list = 0;                        ///< bringing a slot of a chunk in order, when nothing is kept
@@ -37,6 +39,8 @@ struct FrameCounts {
   double nodes = 0;             ///< |H| that are visited
   double boxes = 0;             ///< of nodes and chunks that are tested; D tests a box a node
   double height = 0;            ///< of the octree
+  double refreshed_chunks = 0;  ///< in which something changed
+  double refreshed_slots = 0;   ///< of those that something left or moved in: all that are left in them
   double drawn_objects = 0;     ///< |S_vis|
   double drawn_nodes = 0;       ///< |H_vis|
   double rerecorded_draws = 0;  ///< draws in H_upd
@@ -48,8 +52,11 @@ struct Way {
   bool octree = false, kept = false, queries = false;
 };
 
-[[nodiscard]] double update_scene_s(const FrameCounts& n, const TimeUnits& t);     ///< (2.13)
-[[nodiscard]] double update_octree_s(const FrameCounts& n, const TimeUnits& t);    ///< below (2.13)
+[[nodiscard]] double update_scene_s(const FrameCounts& n, const TimeUnits& t);  ///< (2.13)
+/// T_upd(H), below (2.13), d'_anim |obj| height t_intersect, and what D leaves out: each chunk that changed,
+/// and the nodes above it, are brought up to date, + chunks t_chunk; boxes and sums of those that something
+/// left or moved in are made anew from all that is left in them, + slots t_refresh.
+[[nodiscard]] double update_octree_s(const FrameCounts& n, const TimeUnits& t);
 [[nodiscard]] double traverse_s(const FrameCounts& n, const TimeUnits& t);         ///< (2.14)
 [[nodiscard]] double cull_octree_s(const FrameCounts& n, const TimeUnits& t);      ///< (2.15)
 [[nodiscard]] double cull_scene_s(const FrameCounts& n, const TimeUnits& t);       ///< (2.15), flat

@@ -78,6 +78,8 @@ Taken take(Method method, const FrameFacts& f, const PredictionOptions& options)
   t.counts.nodes = f.nodes_visited;
   t.counts.boxes = f.boxes_tested;
   t.counts.height = std::max(1.0, f.height);
+  t.counts.refreshed_chunks = f.chunks_refreshed;
+  t.counts.refreshed_slots = f.slots_refreshed;
   if (f.visible_slots > 0.0) t.counts.changed_share = f.changed / f.visible_slots;
   // The octree holds what is visible, so whatever changes is put in, taken out or moved.
   t.counts.moved_share = t.counts.changed_share;
@@ -133,6 +135,8 @@ TimeUnits units_of(const UnitCosts& c, const FrameFacts& f, const PredictionOpti
   TimeUnits t;
   t.update = c.update_object_s;
   t.intersect = c.intersect_s;
+  t.refresh_chunk = c.refresh_chunk_s;
+  t.refresh_slot = c.refresh_slot_s;
   t.traverse = c.visit_node_s;
   t.cull_object = c.cull_slot_s;
   t.cull_node = c.cull_node_s;

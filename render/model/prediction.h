@@ -51,6 +51,8 @@ struct FrameFacts {
 
   // The octree, as built or by (3.1)-(3.3).
   double height = 0;
+  double chunks_refreshed = 0;  ///< of the whole scene, in which something changed
+  double slots_refreshed = 0;   ///< in those of them that something left or moved in
   double nodes_visited = 0;
   double boxes_tested = 0;  ///< of nodes and chunks
   double chunks = 0;        ///< in the frustum

@@ -28,6 +28,8 @@ UnitCosts rough_costs(bool software_device) {
   UnitCosts c;
   c.update_object_s = 100e-9;
   c.intersect_s = 40e-9;
+  c.refresh_chunk_s = 300e-9;
+  c.refresh_slot_s = 10e-9;
   c.visit_node_s = 20e-9;
   c.cull_slot_s = 1e-9;
   c.cull_node_s = 10e-9;

@@ -31,6 +31,8 @@ struct UnitCosts {
   // Processor.
   double update_object_s = 0;    ///< t_upd: an entry of the ChangeSet: visible set, box, record, upload
   double intersect_s = 0;        ///< t_intersect: one level of moving an object in the octree
+  double refresh_chunk_s = 0;    ///< bringing a chunk that changed, and the nodes above, up to date
+  double refresh_slot_s = 0;     ///< making boxes and sums of one anew, from a slot of it
   double visit_node_s = 0;       ///< t_trav
   double cull_slot_s = 0;        ///< t_fc: one box of many, in a row (inline)
   double cull_node_s = 0;        ///< t_fc: one box of a node or chunk

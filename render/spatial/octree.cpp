@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 namespace scenegen::render {
 namespace {
@@ -25,15 +26,16 @@ double surface_m2(const Box& b) {
 void add(Octree::Content& sum, const Octree::Content& part) {
   sum.box_m.add(part.box_m);
   sum.vertices += part.vertices;
+  sum.triangles += part.triangles;
   sum.area_m2 += part.area_m2;
 }
 
 }  // namespace
 
-Octree::Octree(const SlotBoxes& boxes, std::function<std::uint32_t(std::uint32_t)> vertices_of_slot,
+Octree::Octree(const SlotBoxes& boxes, std::function<Work(std::uint32_t)> work_of_slot,
                const Options& options)
     : boxes_(boxes),
-      vertices_of_slot_(std::move(vertices_of_slot)),
+      work_of_slot_(std::move(work_of_slot)),
       options_(options),
       chunk_of_slot_(options.slots, kNone),
       fits_(options.slots, 0),
@@ -135,7 +137,8 @@ void Octree::add_to_node(std::uint32_t number, std::uint32_t slot, bool fits) {
   chunk_of_slot_[slot] = into;
   fits_[slot] = fits ? 1 : 0;
   node.fitting += fits ? 1 : 0;
-  touch_chunk(into);
+  if (adding_ == Change::grown && !chunk.stale) add_to_content(chunk.content, slot);
+  touch_chunk(into, adding_);
   if (chunk.slots.size() > options_.slots_per_node) split_chunk(number, at);
 }
 
@@ -154,7 +157,8 @@ void Octree::split_chunk(std::uint32_t number, std::size_t at) {
     chunks_[into].slots.push_back(coded_[i].second);
     chunk_of_slot_[coded_[i].second] = into;
   }
-  touch_chunk(made);
+  touch_chunk(old, Change::stale);
+  touch_chunk(made, Change::stale);
 }
 
 void Octree::join_chunks(std::uint32_t number, std::size_t at) {
@@ -167,7 +171,7 @@ void Octree::join_chunks(std::uint32_t number, std::size_t at) {
     chunks_[keep].slots.push_back(slot);
     chunk_of_slot_[slot] = keep;
   }
-  touch_chunk(keep);
+  touch_chunk(keep, Change::stale);
   free_chunk(gone);
   list.erase(list.begin() + static_cast<std::ptrdiff_t>(at) + 1);
 }
@@ -181,6 +185,7 @@ void Octree::split_node(std::uint32_t number) {
   }
   nodes_[number].chunks.clear();
   nodes_[number].fitting = 0;
+  const Change before = std::exchange(adding_, Change::stale);  // one look at each slot, in the end
   const bool whole = number != 0;  // the root also holds what lies outside its cell
   for (const std::uint32_t slot : slots) {
     const Place place = place_in(nodes_[number], slot);
@@ -190,6 +195,7 @@ void Octree::split_node(std::uint32_t number) {
       add_to_node(number, slot, false);
     }
   }
+  adding_ = before;
 }
 
 void Octree::remove(std::uint32_t slot) {
@@ -207,7 +213,7 @@ void Octree::remove_from_node(std::uint32_t slot) {
   chunk.slots.erase(std::find(chunk.slots.begin(), chunk.slots.end(), slot));
   chunk_of_slot_[slot] = kNone;
   node.fitting -= fits_[slot];
-  touch_chunk(number);
+  touch_chunk(number, Change::stale);
   const auto at = static_cast<std::size_t>(std::find(node.chunks.begin(), node.chunks.end(), number) -
                                            node.chunks.begin());
   if (chunk.slots.empty()) {
@@ -231,10 +237,12 @@ void Octree::join_small(std::uint32_t number) {
   std::vector<std::uint32_t> slots;
   take_slots(top, slots);
   nodes_[top].fitting = 0;
+  const Change before = std::exchange(adding_, Change::stale);
   for (const std::uint32_t slot : slots) {
     const bool fits = (top != 0 || in_root(slot)) && place_in(nodes_[top], slot).fits;
     add_to_node(top, slot, fits);
   }
+  adding_ = before;
   touch_node(top);
 }
 
@@ -272,7 +280,7 @@ void Octree::move(std::uint32_t slot) {
   }
   Chunk& in = chunks_[chunk_of_slot_[slot]];
   if (!in.dirty) dirty_chunks_.push_back(chunk_of_slot_[slot]);
-  in.dirty = true;
+  in.dirty = in.stale = true;
   touch_node(in.node);
 }
 
@@ -294,7 +302,8 @@ void Octree::free_chunk(std::uint32_t number) {
   Chunk& chunk = chunks_[number];
   chunk.node = kNone;
   chunk.slots.clear();
-  chunk.dirty = false;
+  chunk.content = {};
+  chunk.dirty = chunk.stale = false;
   chunk.revision = ++revisions_;
   free_chunks_.push_back(number);
 }
@@ -326,11 +335,12 @@ std::uint32_t Octree::new_children(std::uint32_t number) {
   return first;
 }
 
-void Octree::touch_chunk(std::uint32_t number) {
+void Octree::touch_chunk(std::uint32_t number, Change change) {
   Chunk& chunk = chunks_[number];
   chunk.revision = ++revisions_;
   if (!chunk.dirty) dirty_chunks_.push_back(number);
   chunk.dirty = true;
+  chunk.stale = chunk.stale || change == Change::stale;
   touch_node(chunk.node);
 }
 
@@ -348,7 +358,7 @@ bool Octree::refresh(std::size_t most_slots) {
     if (seen >= most_slots) return false;
     dirty_chunks_.pop_back();
     if (!chunk.dirty) continue;
-    seen += chunk.slots.size();
+    seen += chunk.stale ? chunk.slots.size() : 1;
     refresh_chunk(chunk);
   }
   for (std::size_t level = dirty_nodes_.size(); level-- > 0;) {
@@ -370,16 +380,24 @@ void Octree::refresh_chunk(Chunk& chunk) {
     for (auto i = added; i != chunk.slots.end(); ++i)
       std::rotate(std::upper_bound(chunk.slots.begin(), i, *i), i, i + 1);
   }
-  Content sum;
-  sum.slots = static_cast<std::uint32_t>(chunk.slots.size());
-  for (const std::uint32_t slot : chunk.slots) {
-    const Box box = boxes_.get(slot);
-    sum.box_m.add(box);
-    sum.vertices += vertices_of_slot_(slot);
-    sum.area_m2 += surface_m2(box);
+  if (chunk.stale) {
+    Content sum;
+    for (const std::uint32_t slot : chunk.slots) add_to_content(sum, slot);
+    chunk.content = sum;
+    refreshed_.slots += chunk.slots.size();
   }
-  chunk.content = sum;
-  chunk.dirty = false;
+  ++refreshed_.chunks;
+  chunk.dirty = chunk.stale = false;
+}
+
+void Octree::add_to_content(Content& content, std::uint32_t slot) const {
+  const Box box = boxes_.get(slot);
+  const Work work = work_of_slot_(slot);
+  content.box_m.add(box);
+  ++content.slots;
+  content.vertices += work.vertices;
+  content.triangles += work.triangles;
+  content.area_m2 += surface_m2(box);
 }
 
 void Octree::refresh_node(Node& node) {

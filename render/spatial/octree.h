@@ -35,11 +35,18 @@ struct OctreeVisit {
 /// slots in *chunks* of at most `slots_per_node`, neighbours along the Morton curve together, each with a box
 /// of its own: a chunk is what gets drawn, cached, culled and asked about.
 ///
-/// insert, remove and move change the tree at once; boxes and sums are right after refresh(). About 12 B a
-/// slot, 120 B a chunk and 150 B a node. Nothing is allocated while the tree keeps its size.
+/// insert, remove and move change the tree at once; boxes and sums are right after refresh(). What is added
+/// to a chunk grows its box and sums; what leaves or moves may have been its outermost, so they are made anew
+/// from all slots that are left. About 12 B a slot, 130 B a chunk and 160 B a node. Nothing is allocated
+/// while the tree keeps its size.
 class Octree {
  public:
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+
+  /// What drawing a slot takes.
+  struct Work {
+    std::uint32_t vertices = 0, triangles = 0;
+  };
 
   struct Options {
     Box root_m;             ///< the root's cell is the cube round it
@@ -53,7 +60,8 @@ class Octree {
     Box box_m;  ///< tight
     std::uint32_t slots = 0;
     std::uint64_t vertices = 0;  ///< drawn
-    double area_m2 = 0;          ///< sum of the boxes' surfaces, not clamped (METHODS 4)
+    std::uint64_t triangles = 0;
+    double area_m2 = 0;  ///< sum of the boxes' surfaces, not clamped (METHODS 4)
   };
 
   struct Chunk {
@@ -62,7 +70,8 @@ class Octree {
     std::uint64_t revision = 0;    ///< changes with the chunk's set of slots; never the same twice
     std::uint64_t first_code = 0;  ///< Morton code from which on slots of the node belong here
     std::vector<std::uint32_t> slots;
-    bool dirty = false;
+    bool dirty = false;  ///< listed for refresh()
+    bool stale = false;  ///< box and sums are to be made anew
   };
 
   struct Node {
@@ -81,8 +90,7 @@ class Octree {
   };
 
   /// `boxes` must outlive the tree and be up to date whenever a slot is inserted or moved and at refresh().
-  Octree(const SlotBoxes& boxes, std::function<std::uint32_t(std::uint32_t)> vertices_of_slot,
-         const Options& options);
+  Octree(const SlotBoxes& boxes, std::function<Work(std::uint32_t)> work_of_slot, const Options& options);
 
   /// A slot with an empty box is left out.
   void insert(std::uint32_t slot);
@@ -91,13 +99,23 @@ class Octree {
   void move(std::uint32_t slot);
   /// What is recorded of the slot's chunk is no longer right, for a reason other than its slots.
   void renew(std::uint32_t slot) {
-    if (contains(slot)) touch_chunk(chunk_of_slot_[slot]);
+    if (contains(slot)) touch_chunk(chunk_of_slot_[slot], Change::grown);
   }
   [[nodiscard]] bool contains(std::uint32_t slot) const { return chunk_of_slot_[slot] != kNone; }
   void clear();
-  /// Recomputes boxes and sums of what changed. O(chunks touched * slots in them + their ancestors). Goes on
-  /// until it has seen about `most_slots` slots; false when something is left for the next call.
+  /// Recomputes boxes and sums of what changed. O(chunks that something left * slots in them + chunks touched
+  /// + their ancestors). Goes on until it has seen about `most_slots` slots; false when something is left for
+  /// the next call.
   bool refresh(std::size_t most_slots = std::numeric_limits<std::size_t>::max());
+  /// What refresh() did so far.
+  struct Refreshed {
+    std::uint64_t chunks = 0;  ///< that changed
+    std::uint64_t slots = 0;   ///< of those whose sums were made anew
+    [[nodiscard]] Refreshed since(const Refreshed& before) const {
+      return {chunks - before.chunks, slots - before.slots};
+    }
+  };
+  [[nodiscard]] const Refreshed& refreshed() const { return refreshed_; }
 
   /// Appends the chunks that touch the frustum, those nearer to `eye_m` first, roughly. A node that is wholly
   /// inside a plane hands that on: its subtree is not tested against it. `visits`, if wanted, and `chunks`
@@ -124,6 +142,8 @@ class Octree {
     std::uint32_t child;
     bool fits;
   };
+  /// Of a chunk: its box and sums still hold, or not.
+  enum class Change : std::uint8_t { grown, stale };
   [[nodiscard]] Place place_in(const Node& node, std::uint32_t slot) const;
   [[nodiscard]] bool in_root(std::uint32_t slot) const;
   [[nodiscard]] std::uint64_t code_in(const Node& node, std::uint32_t slot) const;
@@ -141,13 +161,14 @@ class Octree {
   std::uint32_t new_chunk(std::uint32_t node, std::uint64_t first_code);
   void free_chunk(std::uint32_t chunk);
   std::uint32_t new_children(std::uint32_t node);
-  void touch_chunk(std::uint32_t chunk);
+  void touch_chunk(std::uint32_t chunk, Change change);
+  void add_to_content(Content& content, std::uint32_t slot) const;
   void touch_node(std::uint32_t node);
   void refresh_chunk(Chunk& chunk);
   void refresh_node(Node& node);
 
   const SlotBoxes& boxes_;
-  std::function<std::uint32_t(std::uint32_t)> vertices_of_slot_;
+  std::function<Work(std::uint32_t)> work_of_slot_;
   Options options_;
   std::vector<Node> nodes_;
   std::vector<Chunk> chunks_;
@@ -155,7 +176,9 @@ class Octree {
   std::vector<std::uint32_t> free_chunks_;
   std::vector<std::uint32_t> chunk_of_slot_;
   std::vector<std::uint8_t> fits_;  // per slot: counted in its node's `fitting`
+  Change adding_ = Change::grown;   // how chunks change that slots are added to
   std::uint64_t revisions_ = 0;
+  Refreshed refreshed_;
   std::vector<std::uint32_t> dirty_chunks_;
   std::vector<std::vector<std::uint32_t>> dirty_nodes_;         // by level
   std::vector<std::pair<std::uint64_t, std::uint32_t>> coded_;  // scratch of split_chunk

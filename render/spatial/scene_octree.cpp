@@ -20,7 +20,11 @@ Octree::Options options_of(const DrawScene& scene, std::uint32_t slots_per_node)
 SceneOctree::SceneOctree(const DrawScene& scene, std::uint32_t slots_per_node, Build build)
     : scene_(scene),
       tree_(
-          scene.boxes(), [&scene](std::uint32_t slot) { return scene.primitive(slot).work.vertices; },
+          scene.boxes(),
+          [&scene](std::uint32_t slot) {
+            const DrawWork& work = scene.primitive(slot).work;
+            return Octree::Work{work.vertices, work.triangles};
+          },
           options_of(scene, slots_per_node)),
       mirrored_(scene.slot_count()),
       pending_(scene.solid_end()) {

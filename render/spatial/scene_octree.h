@@ -15,7 +15,7 @@ class SceneOctree {
   /// Takes the scene's present state; the root is round everything, hidden or not.
   SceneOctree(const DrawScene& scene, std::uint32_t slots_per_node, Build build = Build::at_once);
 
-  /// After the scene took the changes. O(changes * height).
+  /// After the scene took the changes. O(changes * height + Octree::refresh()).
   void update(const timeline::ChangeSet& changes);
   /// The same put off: only remembers which slots were touched. O(changes).
   void note(const timeline::ChangeSet& changes);

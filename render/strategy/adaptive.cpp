@@ -14,6 +14,7 @@
 #include "render/strategy/device_culled.h"
 #include "render/strategy/estimate_load.h"
 #include "render/strategy/octree_choice.h"
+#include "render/strategy/touched_chunks.h"
 
 namespace scenegen::render {
 
@@ -43,63 +44,6 @@ constexpr double kNear = 1.2;
 constexpr std::uint32_t kSettling = 2;
 /// So long it may take until queries have found out what is hidden.
 constexpr std::uint32_t kGathering = 40;
-
-/// In how many chunk-sized cells something appeared, vanished or changed its look, from a sample.
-class Touched {
- public:
-  Touched(const DrawScene& scene, std::uint32_t per_node) : scene_(scene), per_node_(per_node) {}
-
-  [[nodiscard]] double count(const timeline::ChangeSet& changes) {
-    const std::array lists{changes.shown, changes.hidden, changes.remeshed};
-    std::size_t all = 0;
-    for (const auto& list : lists) all += list.size();
-    if (all == 0) return 0.0;
-    set_cells();
-    cells_.clear();
-    constexpr std::size_t kMost = 128;
-    const std::size_t sampled = std::min(all, kMost);
-    for (std::size_t i = 0; i < sampled; ++i) {
-      std::size_t at = (2 * i + 1) * all / (2 * sampled);
-      for (const auto& list : lists) {
-        if (at < list.size()) {
-          add(list[at]);
-          break;
-        }
-        at -= list.size();
-      }
-    }
-    std::sort(cells_.begin(), cells_.end());
-    const auto different = std::unique(cells_.begin(), cells_.end()) - cells_.begin();
-    return model::different_among(static_cast<double>(all), static_cast<double>(sampled),
-                                  static_cast<double>(different));
-  }
-
- private:
-  void set_cells() {
-    const Box& all = scene_.bounds_m();
-    const glm::dvec3 size = glm::max(glm::dvec3(all.size()), glm::dvec3(1e-3));
-    const double cells = std::max(1.0, static_cast<double>(scene_.solid_end()) / (0.7 * per_node_));
-    per_m_ = std::cbrt(cells / (size.x * size.y * size.z));
-    lo_ = all.lo;
-  }
-  void add(ObjectId id) {
-    const auto slots = scene_.slots_of(id);
-    if (slots.empty()) return;
-    const Box box = scene_.boxes().get(slots.front());
-    if (box.empty()) return;
-    const glm::dvec3 at = (glm::dvec3(box.centre()) - lo_) * per_m_;
-    std::uint64_t cell = 0;
-    for (int axis = 0; axis < 3; ++axis)
-      cell = cell << 21U | static_cast<std::uint64_t>(std::clamp(at[axis], 0.0, 2e6));
-    cells_.push_back(cell);
-  }
-
-  const DrawScene& scene_;
-  double per_node_;
-  double per_m_ = 1;
-  glm::dvec3 lo_{0};
-  std::vector<std::uint64_t> cells_;
-};
 
 class Adaptive final : public Strategy {
  public:
@@ -170,8 +114,10 @@ class Adaptive final : public Strategy {
   model::Choice choice_;
   model::Correction correction_;
   model::Experience experience_;
-  Touched touched_;
-  model::SlowMean changed_{64}, touched_chunks_{4}, rerecorded_draws_{256};
+  ChunksTouched touched_;
+  model::SlowMean changed_{64}, recorded_chunks_{4}, changed_chunks_{4}, left_chunks_{4};
+  // By the tree, while it draws.
+  model::SlowMean rerecorded_draws_{256}, refreshed_chunks_{4}, refreshed_slots_{256};
   double last_changed_ = 0;
 
   model::FrameFacts exact_;  // at the last decision: what the present way found
@@ -219,7 +165,10 @@ void Adaptive::update(const timeline::ChangeSet& changes) {
   way_ == tree ? tree_->update(changes) : tree_->note(changes);
   last_changed_ = static_cast<double>(changes.count());
   changed_.add(last_changed_);
-  touched_chunks_.add(touched_.count(changes));
+  const model::TouchedChunks touched = touched_.count(changes);
+  recorded_chunks_.add(touched.recorded);
+  changed_chunks_.add(touched.changed);
+  left_chunks_.add(touched.left);
 }
 
 /// As often as the choice keeps to its share of a frame.
@@ -256,8 +205,10 @@ void Adaptive::plan(const View& view) {
 }
 
 void Adaptive::learn_of_last_frame() {
-  if (way_ == tree && passes_ > 0 && since_change_ > kSettling)
-    rerecorded_draws_.add(tree_->rerecorded_draws());
+  if (way_ != tree || passes_ == 0 || since_change_ <= kSettling) return;
+  rerecorded_draws_.add(tree_->rerecorded_draws());
+  refreshed_chunks_.add(static_cast<double>(tree_->counters().refreshed_chunks));
+  refreshed_slots_.add(static_cast<double>(tree_->counters().refreshed_slots));
 }
 
 /// What there is to do in this frame, in all ways. The present way has planned it.
@@ -298,13 +249,17 @@ void Adaptive::gather(const View& view) {
   // As long as answers are being gathered they say nothing yet: what was known or guessed before still holds.
   if (way_ == tree && since_change_ < kGathering && facts_.hidden.draws <= 0.0) facts_.exact_queries = false;
   experience_.learn(facts_);
-  experience_.fill_unknown(facts_, per_node_, touched_chunks_.value());
+  const model::TouchedChunks touched{recorded_chunks_.value(), changed_chunks_.value(), left_chunks_.value()};
+  experience_.fill_unknown(facts_, per_node_, touched);
   if (way_ == tree) {
     facts_.draws_rerecorded = rerecorded_draws_.value();
+    facts_.chunks_refreshed = refreshed_chunks_.value();
+    facts_.slots_refreshed = refreshed_slots_.value();
   } else if (facts_.exact_octree) {
     const double seen = facts_.in_chunks.draws / std::max(1.0, facts_.visible_slots);
-    facts_.draws_rerecorded =
-        std::min(facts_.in_chunks.draws, touched_chunks_.value() * seen * 0.7 * per_node_);
+    facts_.draws_rerecorded = std::min(facts_.in_chunks.draws, touched.recorded * seen * 0.7 * per_node_);
+    facts_.chunks_refreshed = touched.changed;
+    facts_.slots_refreshed = std::min(facts_.visible_slots, touched.left * 0.7 * per_node_);
   } else {
     stale_draws_ = facts_.in_chunks.draws;
   }
@@ -320,7 +275,9 @@ double Adaptive::frame_s(const model::Sides& sides) const {
 /// What is put off is done, and what is not fresh in the frustum recorded.
 double Adaptive::change_to_tree_s() const {
   const model::UnitCosts& costs = context_.costs;
-  return static_cast<double>(tree_->pending()) * std::max(1.0, facts_.height) * costs.intersect_s +
+  const auto pending = static_cast<double>(tree_->pending());
+  return pending * std::max(1.0, facts_.height) * costs.intersect_s +
+         std::min(facts_.visible_slots, 0.7 * per_node_ * pending) * costs.refresh_slot_s +
          stale_draws_ * costs.record_kept_s;
 }
 

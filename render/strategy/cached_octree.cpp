@@ -39,7 +39,13 @@ void CachedOctree::choose_form() {
 
 void CachedOctree::update(const timeline::ChangeSet& changes) {
   changed_ = changes.count();
-  if (!inline_ && unless_out_of_memory([&] { octree_->update(changes); })) return;
+  refreshed_ = {};
+  const auto update = [&] {
+    const Octree::Refreshed before = tree().refreshed();
+    octree_->update(changes);
+    refreshed_ = tree().refreshed().since(before);
+  };
+  if (!inline_ && unless_out_of_memory(update)) return;
   inline_->update(changes);
 }
 
@@ -73,6 +79,8 @@ void CachedOctree::plan_chunks() {
   passes_ = 0;
   counters_.nodes = found_.nodes;
   counters_.tree_nodes = tree().node_count();
+  counters_.refreshed_chunks = refreshed_.chunks;
+  counters_.refreshed_slots = refreshed_.slots;
   counters_.tested = list_.tested + found_.tests;
   counters_.drawn = list_.blended.size();
   counters_.chunks = chunks_.size();
@@ -155,6 +163,8 @@ model::FrameFacts CachedOctree::facts() const {
   facts.blended = load_of_slots(scene_, list_.blended, screen);
   add_scene_facts(scene_, screen, facts);
   facts.changed = static_cast<double>(changed_);
+  facts.chunks_refreshed = static_cast<double>(refreshed_.chunks);
+  facts.slots_refreshed = static_cast<double>(refreshed_.slots);
   foresee(facts);
   if (passes_ > 0) {  // otherwise what was foreseen stands
     facts.chunks_rerecorded = static_cast<double>(counters_.recorded) / recordings();

@@ -118,7 +118,8 @@ class CachedOctree : public Strategy {
   std::uint32_t objects_per_node_ = 0;
   OctreeCounters found_;
   double changed_share_ = 0;
-  std::size_t changed_ = 0;   // in the last update
+  std::size_t changed_ = 0;  // in the last update
+  Octree::Refreshed refreshed_;
   std::uint32_t passes_ = 0;  // drawn since the plan
   bool indirect_form_ = false;
   std::optional<SceneOctree> octree_;

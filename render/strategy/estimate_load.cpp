@@ -48,6 +48,9 @@ class Coverage {
   std::array<double, kColumns * kRows> open_{};  // logarithms of the open share
 };
 
+/// Things of which one was sampled lie at most so many layers deep over the picture.
+constexpr double kDeepest = 4.0;
+
 /// Sums up some slots of many, then scales.
 class Sample {
  public:
@@ -62,6 +65,7 @@ class Sample {
   }
 
   [[nodiscard]] double vertices() const { return vertices_; }
+  [[nodiscard]] double triangles() const { return triangles_; }
   [[nodiscard]] model::Load scaled(std::size_t draws) const {
     model::Load load;
     if (taken_ == 0) return load;
@@ -71,8 +75,13 @@ class Sample {
     load.triangles = scale * triangles_;
     load.textured_share = textured_ / static_cast<double>(taken_);
     Coverage coverage(screen_);
-    for (std::size_t i = 0; i < taken_; ++i)
-      load.fragments += scale * coverage.add(spots_[i].first, spots_[i].second, scale);
+    for (std::size_t i = 0; i < taken_; ++i) {
+      const auto& [spot, filled] = spots_[i];
+      // What fills the picture because it is near stands for itself, not for hundreds of its kind.
+      const double like = std::min(
+          scale, std::max(1.0, kDeepest * screen_.pixels() / std::max(1.0, filled * spot.fragments())));
+      load.fragments += like * coverage.add(spot, filled, like);
+    }
     load.screen_share = coverage.share();
     return load;
   }
@@ -97,6 +106,22 @@ class Steps {
  private:
   std::size_t count_, parts_, part_ = 0;
 };
+
+/// What octrees know of chunks.
+struct Sums {
+  std::size_t slots = 0;
+  double vertices = 0, triangles = 0;
+};
+Sums sums_of(const Octree& tree, std::span<const std::uint32_t> chunks) {
+  Sums all;
+  for (const std::uint32_t number : chunks) {
+    const Octree::Content& content = tree.chunk(number).content;
+    all.slots += content.slots;
+    all.vertices += static_cast<double>(content.vertices);
+    all.triangles += static_cast<double>(content.triangles);
+  }
+  return all;
+}
 
 std::uint64_t solid_bits(const DrawScene& scene, std::size_t word) {
   const std::uint64_t bits = scene.visible().words()[word];
@@ -191,23 +216,18 @@ model::Load load_of_visible(const DrawScene& scene, const ScreenArea& screen) {
 
 model::Load load_of_chunks(const DrawScene& scene, const Octree& tree, std::span<const std::uint32_t> chunks,
                            const ScreenArea& screen) {
-  double vertices = 0.0;
-  std::size_t count = 0;
-  for (const std::uint32_t number : chunks) {
-    const Octree::Content& content = tree.chunk(number).content;
-    count += content.slots;
-    vertices += static_cast<double>(content.vertices);
-  }
+  const Sums all = sums_of(tree, chunks);
   Sample sample(scene, screen);
-  Steps steps(count);
+  Steps steps(all.slots);
   std::size_t passed = 0;
   for (const std::uint32_t number : chunks) {
     const std::vector<std::uint32_t>& slots = tree.chunk(number).slots;
     for (; steps.below(passed + slots.size()); steps.next()) sample.add(slots[steps.at() - passed]);
     passed += slots.size();
   }
-  model::Load load = sample.scaled(count);
-  load.vertices = vertices;
+  model::Load load = sample.scaled(all.slots);
+  load.vertices = all.vertices;
+  load.triangles = all.triangles;
   return load;
 }
 
@@ -222,26 +242,23 @@ void add_scene_facts(const DrawScene& scene, const ScreenArea& screen, model::Fr
 
 model::Load load_in_frustum(const DrawScene& scene, const Octree& tree, std::span<const std::uint32_t> chunks,
                             const CullPlanes& planes, const ScreenArea& screen) {
-  std::size_t count = 0;
-  double vertices = 0;
-  for (const std::uint32_t number : chunks) {
-    count += tree.chunk(number).slots.size();
-    vertices += static_cast<double>(tree.chunk(number).content.vertices);
-  }
+  const Sums all = sums_of(tree, chunks);
   Sample sample(scene, screen);
-  Steps steps(count);
+  Steps steps(all.slots);
   std::size_t passed = 0;
   std::size_t inside = 0;
   double sampled_vertices = 0;
+  double sampled_triangles = 0;
   std::size_t taken = 0;
   for (const std::uint32_t number : chunks) {
     const std::vector<std::uint32_t>& slots = tree.chunk(number).slots;
     for (; steps.below(passed + slots.size()); steps.next(), ++taken) {
       const std::uint32_t slot = slots[steps.at() - passed];
       sampled_vertices += scene.primitive(slot).work.vertices;
-      const auto all = planes.all();
+      sampled_triangles += scene.primitive(slot).work.triangles;
+      const auto sides = planes.all();
       const Box box = scene.boxes().get(slot);
-      if (std::any_of(all.begin(), all.end(),
+      if (std::any_of(sides.begin(), sides.end(),
                       [&](const CullPlane& plane) { return side_of(plane, box) == Side::outside; }))
         continue;
       sample.add(slot);
@@ -249,10 +266,11 @@ model::Load load_in_frustum(const DrawScene& scene, const Octree& tree, std::spa
     }
     passed += slots.size();
   }
-  model::Load load = sample.scaled(taken == 0 ? 0 : inside * count / taken);
+  model::Load load = sample.scaled(taken == 0 ? 0 : inside * all.slots / taken);
   // How many there are in the chunks is known, and only a share is to be estimated: where few slots have most
   // of the vertices, the sample alone says 40 % too much or too little from frame to frame.
-  if (sampled_vertices > 0.0) load.vertices = vertices * sample.vertices() / sampled_vertices;
+  if (sampled_vertices > 0.0) load.vertices = all.vertices * sample.vertices() / sampled_vertices;
+  if (sampled_triangles > 0.0) load.triangles = all.triangles * sample.triangles() / sampled_triangles;
   return load;
 }
 

@@ -46,10 +46,10 @@ constexpr std::size_t kSampledSlots = 512;
                                         const ScreenArea& screen);
 /// Of opaque and masked slots that are visible by timeline. O(slots / 64).
 [[nodiscard]] model::Load load_of_visible(const DrawScene& scene, const ScreenArea& screen);
-/// Draws and vertices are exact, fragments by kSampledSlots.
+/// Draws, vertices and triangles are exact, the rest by kSampledSlots.
 [[nodiscard]] model::Load load_of_chunks(const DrawScene& scene, const Octree& tree,
                                          std::span<const std::uint32_t> chunks, const ScreenArea& screen);
-/// Of the slots of these chunks, those in the frustum: all by a sample.
+/// Of the slots of these chunks, those in the frustum: shares of the chunks' exact sums by a sample.
 [[nodiscard]] model::Load load_in_frustum(const DrawScene& scene, const Octree& tree,
                                           std::span<const std::uint32_t> chunks, const CullPlanes& planes,
                                           const ScreenArea& screen);

@@ -15,7 +15,9 @@ class OctreeRecord final : public ListStrategy {
 
   void update(const timeline::ChangeSet& changes) override {
     ListStrategy::update(changes);
+    const Octree::Refreshed before = octree_.tree().refreshed();
     octree_.update(changes);
+    refreshed_ = octree_.tree().refreshed().since(before);
   }
 
   void plan(const View& view) override {
@@ -37,6 +39,8 @@ class OctreeRecord final : public ListStrategy {
     counters_.nodes = found.nodes;
     counters_.chunks = chunks_.size();
     counters_.tree_nodes = tree.node_count();
+    counters_.refreshed_chunks = refreshed_.chunks;
+    counters_.refreshed_slots = refreshed_.slots;
     boxes_tested_ = found.tests;
   }
 
@@ -44,6 +48,8 @@ class OctreeRecord final : public ListStrategy {
     model::FrameFacts facts = ListStrategy::facts();
     const Octree& tree = octree_.tree();
     facts.height = model::octree_height(tree.root().content.slots, tree.slots_per_node());
+    facts.chunks_refreshed = static_cast<double>(refreshed_.chunks);
+    facts.slots_refreshed = static_cast<double>(refreshed_.slots);
     facts.nodes_visited = static_cast<double>(counters_.nodes);
     facts.boxes_tested = static_cast<double>(boxes_tested_);
     facts.chunks = static_cast<double>(chunks_.size());
@@ -64,6 +70,7 @@ class OctreeRecord final : public ListStrategy {
   std::vector<std::uint32_t> chunks_;
   std::vector<std::uint64_t> inside_;
   std::uint64_t boxes_tested_ = 0;
+  Octree::Refreshed refreshed_;
 };
 
 }  // namespace

@@ -98,6 +98,8 @@ nlohmann::ordered_json json_of(const render::model::FrameFacts& f) {
           {"visible", json_of(f.visible)},
           {"inFrustum", json_of(f.in_frustum)},
           {"height", f.height},
+          {"chunksRefreshed", f.chunks_refreshed},
+          {"slotsRefreshed", f.slots_refreshed},
           {"nodesVisited", f.nodes_visited},
           {"boxesTested", f.boxes_tested},
           {"chunks", f.chunks},

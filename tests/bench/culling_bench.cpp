@@ -133,7 +133,11 @@ void hierarchical() {
   for (const std::uint32_t n : {5U, 20U, 100U, 500U}) {
     options.slots_per_node = n;
     Octree tree(
-        boxes, [](std::uint32_t) { return 36U; }, options);
+        boxes,
+        [](std::uint32_t) {
+          return Octree::Work{36, 12};
+        },
+        options);
     const double build = best_ns(slots, 1, [&] {
       for (std::uint32_t i = 0; i < slots; ++i) tree.insert(i);
       tree.refresh();

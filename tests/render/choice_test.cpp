@@ -249,11 +249,13 @@ TEST_CASE("(3.14) what an octree that is not built would have is guessed; once s
   facts.exact_inline = true;
   Experience experience;
   FrameFacts guess = facts;
-  experience.fill_unknown(guess, 200, 50);
+  experience.fill_unknown(guess, 200, {50, 60, 30});
   CHECK(guess.in_chunks.draws > 20'000);
   CHECK(guess.in_chunks.draws < 30'000);
   CHECK(guess.chunks == Approx(guess.in_chunks.draws / 140).epsilon(0.01));
   CHECK(guess.chunks_rerecorded == Approx(50 * guess.in_chunks.draws / 100'000));
+  CHECK(guess.chunks_refreshed == 60);  // in view or not
+  CHECK(guess.slots_refreshed == Approx(30 * 140));
   CHECK(guess.height == Approx(std::log2(500.0) / 3.0));
   CHECK(guess.chunks_hidden > 0);  // four layers and more
   CHECK(guess.chunks_hidden < guess.chunks);
@@ -269,14 +271,15 @@ TEST_CASE("(3.14) what an octree that is not built would have is guessed; once s
   seen.exact_octree = seen.exact_queries = true;
   experience.learn(seen);
   FrameFacts again = facts;
-  experience.fill_unknown(again, 200, 50);
+  experience.fill_unknown(again, 200, {50, 60, 30});
   CHECK(again.in_chunks.draws == Approx(40'000));
   CHECK(again.nodes_visited == Approx(3 * again.chunks + again.height));
   CHECK(again.hidden.draws == Approx(30'000));
   CHECK(again.asked == Approx(0.1 * again.chunks));
   // What is exact is left alone.
   FrameFacts exact = seen;
-  experience.fill_unknown(exact, 200, 50);
+  experience.fill_unknown(exact, 200, {50, 60, 30});
   CHECK(exact.chunks == 100);
+  CHECK(exact.slots_refreshed == 0);
   CHECK(exact.hidden.draws == 30'000);
 }

@@ -5,6 +5,7 @@
 
 #include "render/spatial/scene_octree.h"
 #include "render/strategy/draw_list.h"
+#include "render/strategy/touched_chunks.h"
 #include "scene/random.h"
 #include "tests/render/render_support.h"
 
@@ -36,13 +37,14 @@ Scene boxes_scene(std::size_t objects) {
 }
 
 struct Sum {
-  double draws = 0, vertices = 0, fragments = 0;
+  double draws = 0, vertices = 0, triangles = 0, fragments = 0;
 };
 Sum sum_of(const DrawScene& scene, const std::vector<std::uint32_t>& slots, const ScreenArea& screen) {
   Sum sum;
   for (const std::uint32_t slot : slots) {
     sum.draws += 1;
     sum.vertices += scene.primitive(slot).work.vertices;
+    sum.triangles += scene.primitive(slot).work.triangles;
     sum.fragments += screen.spot(scene.boxes().get(slot)).fragments();  // all are in the picture
   }
   return sum;
@@ -79,8 +81,53 @@ TEST_CASE("loads are exact up to 512 slots, and near above") {
     const model::Load load = load_of_chunks(scene, octree.tree(), chunks, screen);
     CHECK(load.draws == all.draws);
     CHECK(load.vertices == all.vertices);
+    CHECK(load.triangles == all.triangles);
     CHECK(load.fragments == Approx(all.fragments).epsilon(tolerance));
   }
+}
+
+TEST_CASE("what is near the eye does not stand for hundreds of its kind") {
+  const Scene source = boxes_scene(20'000);
+  const timeline::Player player(timeline::compile(source));
+  const DrawScene scene(source, player, std::vector<std::uint32_t>(source.materials.size() + 1, 0));
+  // Amid the boxes, looking along them: some are sampled that fill the picture.
+  const View view = look({0, 5, 15}, {0, 5, 0}, kSize);
+  DrawList list;
+  list_in_frustum(scene, cull_planes(frustum_of(view.clip_from_world), scene.bounds_m()), list);
+  const ScreenArea screen(view, kSize);
+  double all = 0;
+  for (const std::uint32_t slot : list.solid) {
+    const std::uint32_t one[]{slot};
+    all += load_of_slots(scene, one, screen).fragments;
+  }
+  REQUIRE(list.solid.size() > 2 * kSampledSlots);
+  CHECK(load_of_slots(scene, list.solid, screen).fragments == Approx(all).epsilon(0.5));
+}
+
+TEST_CASE("from a sample of changes it is guessed how many chunks they touch") {
+  const Scene source = boxes_scene(20'000);
+  timeline::Player player(timeline::compile(source));
+  DrawScene scene(source, player, std::vector<std::uint32_t>(source.materials.size() + 1, 0));
+  SceneOctree octree(scene, 100);
+  ChunksTouched touched(scene, 100);
+  CHECK(touched.count(player.seek(1.0)).recorded == 0);
+  const auto follow = [&](double time_s) {
+    const timeline::ChangeSet& changes = player.seek(time_s);
+    scene.apply(changes, player);
+    octree.update(changes);
+    return touched.count(changes);
+  };
+  // A fourth of all comes, everywhere: every chunk is recorded anew, none loses anything.
+  const model::TouchedChunks come = follow(6.0);
+  const auto chunks = static_cast<double>(octree.tree().chunk_count());
+  CHECK(come.recorded == Approx(chunks).epsilon(0.4));
+  CHECK(come.changed == come.recorded);
+  CHECK(come.left == 0);
+  const std::uint64_t before = octree.tree().refreshed().slots;
+  const model::TouchedChunks gone = follow(1.0);
+  CHECK(gone.left == gone.recorded);
+  const auto slots = static_cast<double>(octree.tree().refreshed().slots - before);
+  CHECK(70.0 * gone.left == Approx(slots).epsilon(0.4));
 }
 
 TEST_CASE("an orthographic view counts the pixels of a box wherever it is") {

@@ -54,12 +54,16 @@ TEST_CASE("(2.13) to (2.22) stages on the processor and the device") {
                       .nodes = 50,
                       .boxes = 40,
                       .height = 3,
+                      .refreshed_chunks = 5,
+                      .refreshed_slots = 90,
                       .drawn_objects = 400,
                       .drawn_nodes = 30,
                       .rerecorded_draws = 60,
                       .queried_nodes = 20};
   const TimeUnits t{.update = 1,
                     .intersect = 2,
+                    .refresh_chunk = 1.5,
+                    .refresh_slot = 0.25,
                     .traverse = 3,
                     .cull_object = 0.5,
                     .cull_node = 4,
@@ -71,7 +75,7 @@ TEST_CASE("(2.13) to (2.22) stages on the processor and the device") {
                     .query = 13,
                     .receive = 17};
   CHECK(update_scene_s(n, t) == Approx(100));
-  CHECK(update_octree_s(n, t) == Approx(0.02 * 1000 * 3 * 2));
+  CHECK(update_octree_s(n, t) == Approx(0.02 * 1000 * 3 * 2 + 5 * 1.5 + 90 * 0.25));
   CHECK(traverse_s(n, t) == Approx(150));
   CHECK(cull_octree_s(n, t) == Approx(160));
   CHECK(cull_scene_s(n, t) == Approx(500));

@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::uint32_t kNone = Octree::kNone;
 
-std::uint32_t vertices_of(std::uint32_t slot) {
-  return 3 * (slot % 7 + 1);
+Octree::Work work_of(std::uint32_t slot) {
+  return {3 * (slot % 7 + 1), slot % 5 + 1};
 }
 
 bool contains(const Box& outer, const Box& inner) {
@@ -50,16 +50,20 @@ struct Model {
         REQUIRE(seen.insert(slot).second);
         const Box box = boxes.get(slot);
         own.box_m.add(box);
-        own.vertices += vertices_of(slot);
+        own.vertices += work_of(slot).vertices;
+        own.triangles += work_of(slot).triangles;
         const glm::dvec3 s(box.size());
         own.area_m2 += 2 * (s.x * s.y + s.y * s.z + s.z * s.x);
         fitting += check_place(node, box, number == 0) ? 1 : 0;
       }
       REQUIRE(chunk.content.box_m == own.box_m);
+      REQUIRE(chunk.content.slots == chunk.slots.size());
       REQUIRE(chunk.content.vertices == own.vertices);
+      REQUIRE(chunk.content.triangles == own.triangles);
       REQUIRE(chunk.content.area_m2 == Approx(own.area_m2));
       sum.box_m.add(own.box_m);
       sum.vertices += own.vertices;
+      sum.triangles += own.triangles;
       sum.area_m2 += own.area_m2;
       sum.slots += static_cast<std::uint32_t>(chunk.slots.size());
     }
@@ -72,6 +76,7 @@ struct Model {
         const Octree::Content child = check_node(tree, node.first_child + i, seen);
         sum.box_m.add(child.box_m);
         sum.vertices += child.vertices;
+        sum.triangles += child.triangles;
         sum.area_m2 += child.area_m2;
         sum.slots += child.slots;
       }
@@ -79,6 +84,7 @@ struct Model {
     }
     REQUIRE(node.content.slots == sum.slots);
     REQUIRE(node.content.vertices == sum.vertices);
+    REQUIRE(node.content.triangles == sum.triangles);
     REQUIRE(node.content.area_m2 == Approx(sum.area_m2));
     REQUIRE((sum.slots == 0 || node.content.box_m == sum.box_m));
     return sum;
@@ -153,7 +159,7 @@ TEST_CASE("a tree keeps its rules through random changes, for several sizes of n
     options.root_m = Box{glm::vec3(-35), glm::vec3(35)};  // some boxes lie outside
     options.slots = kSlots;
     options.slots_per_node = per_node;
-    Octree tree(model.boxes, vertices_of, options);
+    Octree tree(model.boxes, work_of, options);
     model.check(tree);
     std::uint64_t r = 0;
     for (int round = 0; round < 12; ++round) {
@@ -201,7 +207,7 @@ TEST_CASE("a chunk's revision tells what must be recorded again, and never comes
   options.root_m = Box{glm::vec3(-10), glm::vec3(10)};
   options.slots = 4;
   options.slots_per_node = 3;
-  Octree tree(boxes, vertices_of, options);
+  Octree tree(boxes, work_of, options);
   tree.insert(0);
   tree.insert(1);
   tree.refresh();
@@ -221,6 +227,36 @@ TEST_CASE("a chunk's revision tells what must be recorded again, and never comes
   CHECK(tree.chunk(tree.chunk_of(2)).revision > second);
 }
 
+TEST_CASE("sums are made anew only of chunks that something left or moved in") {
+  SlotBoxes boxes;
+  boxes.resize(100);
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    const glm::vec3 at(static_cast<float>(i % 10), static_cast<float>(i / 10), 1.0F);
+    boxes.set(i, Box{at, at + 0.5F});
+  }
+  Octree::Options options;
+  options.root_m = Box{glm::vec3(-1), glm::vec3(11)};
+  options.slots = 100;
+  options.slots_per_node = 200;
+  Octree tree(boxes, work_of, options);
+  for (std::uint32_t i = 0; i < 99; ++i) tree.insert(i);
+  tree.refresh();
+  CHECK(tree.refreshed().slots == 0);
+  CHECK(tree.refreshed().chunks == 1);
+  tree.insert(99);
+  tree.refresh();
+  CHECK(tree.refreshed().slots == 0);
+  CHECK(tree.refreshed().chunks == 2);
+  CHECK(tree.root().content.box_m.hi.y == Approx(9.5F));
+  tree.remove(99);
+  tree.refresh();
+  CHECK(tree.refreshed().slots == 99);
+  tree.move(3);
+  tree.move(4);
+  tree.refresh();
+  CHECK(tree.refreshed().slots == 2 * 99);
+}
+
 TEST_CASE("equal boxes at one place, and boxes without extent, do not split for ever") {
   SlotBoxes boxes;
   boxes.resize(1000);
@@ -230,13 +266,13 @@ TEST_CASE("equal boxes at one place, and boxes without extent, do not split for 
   options.root_m = Box{glm::vec3(0), glm::vec3(2.5F)};
   options.slots = 1000;
   options.slots_per_node = 5;
-  Octree tree(boxes, vertices_of, options);
+  Octree tree(boxes, work_of, options);
   for (std::uint32_t i = 0; i < 1000; ++i) tree.insert(i);
   tree.refresh();
   CHECK(tree.root().content.slots == 1000);
   CHECK(tree.node_count() < 8 * 17);
   for (std::uint32_t i = 0; i < 1000; ++i) CHECK(tree.chunk(tree.chunk_of(i)).slots.size() <= 5);
-  Octree empty(boxes, vertices_of, {});
+  Octree empty(boxes, work_of, {});
   empty.refresh();
   CHECK(empty.root().content.slots == 0);
 }
@@ -262,7 +298,7 @@ TEST_CASE("a close view of test set 32 costs a tenth of the flat tests, or less"
   const CullPlanes planes = cull_planes(frustum_of(view.clip_from_world), all);
   for (const std::uint32_t per_node : {20U, 100U}) {
     options.slots_per_node = per_node;
-    Octree tree(boxes, vertices_of, options);
+    Octree tree(boxes, work_of, options);
     for (std::uint32_t i = 0; i < count; ++i) tree.insert(i);
     tree.refresh();
     OctreeCounters counters;

@@ -13,6 +13,8 @@ UnitCosts units() {
   UnitCosts c;
   c.update_object_s = 2;
   c.intersect_s = 3;
+  c.refresh_chunk_s = 9;
+  c.refresh_slot_s = 0.75;
   c.visit_node_s = 5;
   c.cull_slot_s = 0.5;
   c.cull_node_s = 7;
@@ -60,6 +62,8 @@ FrameFacts facts() {
   f.visible = {900, 900 * 36, 1000, 0, 0.25};
   f.in_frustum = {100, 100 * 36, 1000, 0, 0.25};
   f.height = 2;
+  f.chunks_refreshed = 4;
+  f.slots_refreshed = 64;
   f.nodes_visited = 30;
   f.boxes_tested = 50;
   f.chunks = 12;
@@ -82,7 +86,7 @@ constexpr double kSky = 1000 * 0.25;        // 1000 pixels of it are covered
 constexpr double kDraw = 73;                // 36 vertices, plain
 constexpr double kDevice = 20'000 - kSky;   // T_0 without that sky
 constexpr double kUpdate = 8 * 2;           // changed
-constexpr double kTree = 8 * 2 * 3;         // changed, height, t_intersect
+constexpr double kTree = 8 * 2 * 3 + 84;    // changed, height, t_intersect; chunks and slots made anew
 constexpr double kCull = 30 * 5 + 50 * 7;   // nodes, boxes
 constexpr double kSecondaries = 12 * 105.;  // 15 draws each
 

@@ -32,7 +32,11 @@ class World {
       boxes_.set(i, {at - 0.4F, at + 0.4F});
     }
     tree.emplace(
-        boxes_, [](std::uint32_t) { return 36U; }, options);
+        boxes_,
+        [](std::uint32_t) {
+          return render::Octree::Work{36, 12};
+        },
+        options);
     for (std::uint32_t i = 0; i < kSlots; ++i) tree->insert(i);
     tree->refresh();
   }

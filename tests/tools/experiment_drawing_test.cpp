@@ -79,7 +79,11 @@ TEST_CASE("queries breadth first hide objects that no pixel shows, and no others
   REQUIRE(stage);
   BoxedObjects objects = boxed(scene, 5);
   render::Octree tree(
-      objects.slots, [](std::uint32_t) { return 36U; }, objects.options);
+      objects.slots,
+      [](std::uint32_t) {
+        return render::Octree::Work{36, 12};
+      },
+      objects.options);
   std::vector<std::uint32_t> all;
   for (std::uint32_t o = 0; o < objects.boxes.size(); ++o) {
     tree.insert(o);

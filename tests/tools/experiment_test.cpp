@@ -32,7 +32,11 @@ render::View view_of(const glm::vec3& eye, const glm::vec3& target) {
 
 FlatTree octree_of(const BoxedObjects& objects, OctreeUnits units) {
   render::Octree tree(
-      objects.slots, [](std::uint32_t) { return 36U; }, objects.options);
+      objects.slots,
+      [](std::uint32_t) {
+        return render::Octree::Work{36, 12};
+      },
+      objects.options);
   for (std::uint32_t i = 0; i < objects.boxes.size(); ++i) tree.insert(i);
   tree.refresh();
   return flatten(tree, units);

@@ -284,7 +284,11 @@ Result<DocumentSection> invisible_objects(const ExperimentContext& context) {
   // Five objects a node: what the dissertation starts from.
   BoxedObjects objects = boxed(scene, 5);
   render::Octree tree(
-      objects.slots, [](std::uint32_t) { return 36U; }, objects.options);
+      objects.slots,
+      [](std::uint32_t) {
+        return render::Octree::Work{36, 12};
+      },
+      objects.options);
   for (std::uint32_t o = 0; o < objects.boxes.size(); ++o) tree.insert(o);
   tree.refresh();
   EffectFigures figures;

@@ -56,8 +56,8 @@ namespace {
 
 constexpr std::uint32_t kPerLeaf = 20;
 
-std::uint32_t no_vertices(std::uint32_t /*slot*/) {
-  return 0;
+render::Octree::Work no_work(std::uint32_t /*slot*/) {
+  return {};
 }
 
 std::vector<std::uint32_t> all_of(const Scene& scene) {
@@ -78,7 +78,7 @@ Structure octree_of(const BoxedObjects& objects, const std::vector<std::uint32_t
   const auto tree = std::make_shared<std::optional<render::Octree>>();
   return {name,
           [&objects, &all, tree] {
-            tree->emplace(objects.slots, no_vertices, objects.options);
+            tree->emplace(objects.slots, no_work, objects.options);
             for (const std::uint32_t o : all) (*tree)->insert(o);
             (*tree)->refresh();
           },
@@ -249,7 +249,7 @@ class Updates {
   Updates(const Scene& scene, const render::View& view)
       : objects_(boxed(scene, kPerLeaf)),
         player_(timeline::compile(scene)),
-        octree_(objects_.slots, no_vertices, objects_.options),
+        octree_(objects_.slots, no_work, objects_.options),
         refit_(objects_.boxes, kPerLeaf),
         planes_(render::cull_planes(render::frustum_of(view.clip_from_world), objects_.options.root_m)) {}
 
