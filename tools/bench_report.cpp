@@ -251,13 +251,11 @@ Chart overview_chart(const std::vector<BenchView>& views, const std::string& id)
 }
 
 /// "adaptive is fastest in 6 of 10 views, inline in 4."
-std::string summary(const std::vector<BenchView>& views) {
+std::string summary(const std::vector<BenchView>& views, std::size_t failed) {
   std::map<std::string, int> wins;
   int counted_views = 0;
-  std::size_t failed = 0;
   for (const BenchView& view : views) {
     for (const Row& row : view.rows) {
-      failed += row.json->contains("error") ? 1 : 0;
       const ordered_json mean = at(*row.json, "frameMs/mean");
       if (!mean.is_number() || mean.get<double>() > view.best_ms) continue;
       ++wins[row.label];
@@ -303,17 +301,18 @@ std::string machine_line(const ordered_json& results) {
 
 DocumentSection bench_section_of_all(std::span<const ordered_json> results, const std::string& id) {
   const std::vector<BenchView> views = views_of(results);
-  DocumentSection out{id, "Benchmark", {summary(views)}, {}};
-  for (const ordered_json& result : results) {
-    const std::string number =
-        results.size() > 1 ? "Results " + std::to_string(number_of(&result, results)) + ": " : "";
-    out.paragraphs.push_back(number + machine_line(result));
-  }
+  DocumentSection out{id, "Benchmark", {}, {}};
   for (const BenchView& view : views) {
     for (const Row& row : view.rows) {
       if (const std::string why = text(*row.json, "error"); !why.empty())
         out.failures.push_back({view.title() + ": " + row.label, why});
     }
+  }
+  out.paragraphs.push_back(summary(views, out.failures.size()));
+  for (const ordered_json& result : results) {
+    const std::string number =
+        results.size() > 1 ? "Results " + std::to_string(number_of(&result, results)) + ": " : "";
+    out.paragraphs.push_back(number + machine_line(result));
   }
   if (views.size() > 1) {
     if (Chart chart = overview_chart(views, id + "-views"); !chart.series.empty())

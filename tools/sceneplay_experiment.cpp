@@ -54,7 +54,11 @@ class Laboratory {
       } else {
         results_.document.sections.push_back(std::move(*section));
       }
-      if (auto written = write(section.has_value()); !written) return forward_error(written);
+      // A disk that is full now may have room later, and what was found is on stdout too: the rest goes on.
+      if (auto written = write(section.has_value()); !written) {
+        const int failed = report_error(written.error());
+        if (code == 0) code = failed;
+      }
     }
     return code;
   }
@@ -154,18 +158,21 @@ class Laboratory {
                            {"cameraPaths", context_.camera_paths},
                            {"arguments", request_.arguments},
                            {"seconds", seconds}};
+    Result<void> files = write_files(pretty(experiment_json(run, results_)), has_new);
+    if (!has_new || request_.quiet) return files;
+    const bool first = results_.document.sections.size() == 1;
+    auto told = write_stdout((first ? "" : "\n\n") + section_text(results_.document.sections.back()));
+    return files ? told : files;
+  }
+
+  [[nodiscard]] Result<void> write_files(const std::string& json, bool tables) const {
     const std::filesystem::path folder(request_.folder);
-    if (auto written =
-            write_file((folder / "experiment.json").string(), pretty(experiment_json(run, results_)));
-        !written)
-      return written;
-    if (!has_new) return {};
+    if (auto written = write_file((folder / "experiment.json").string(), json); !written) return written;
+    if (!tables) return {};
     for (const auto& [name, text] : table_files(results_.document)) {
       if (auto written = write_file((folder / name).string(), text); !written) return written;
     }
-    if (request_.quiet) return {};
-    const bool first = results_.document.sections.size() == 1;
-    return write_stdout((first ? "" : "\n\n") + section_text(results_.document.sections.back()));
+    return {};
   }
 
   const ExperimentRequest& request_;

@@ -180,6 +180,25 @@ TEST_CASE("experiment: what cannot run is said, and the rest goes on") {
   CHECK_FALSE(std::filesystem::exists(folder.file("b/experiment.json")));
 }
 
+TEST_CASE("experiment: a disk that is full is said, and the rest is measured all the same") {
+  const TemporaryFolder folder;
+  ProcessOptions full;
+  full.most_file_bytes = 500;
+  const auto result = run(SCENEPLAY_PROGRAM,
+                          words("experiment octree-or-bvh invisible-objects --quick --repeat 1 --size 96x54 "
+                                "--samples 1 -o " +
+                                folder.file("a")),
+                          full);
+  CHECK(result.code == 3);
+  CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 2);  // once after each
+  CHECK_THAT(result.err,
+             Catch::Matchers::StartsWith("error: ") && Catch::Matchers::Contains("experiment.json"));
+  CHECK_THAT(result.out, Catch::Matchers::Contains("LBVH, Morton") &&
+                             Catch::Matchers::Contains("D table 2") &&
+                             Catch::Matchers::Contains("Failed: a picture:"));
+  CHECK_FALSE(std::filesystem::exists(folder.file("a/experiment.json")));
+}
+
 TEST_CASE("experiment: wrong calls") {
   const TemporaryFolder folder;
   test::write_file(folder.file("file"), "no folder");

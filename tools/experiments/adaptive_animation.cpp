@@ -164,10 +164,9 @@ Result<void> play_animation(const ExperimentContext& context, int set, Animation
   add_animation(name, scene, *runs, out);
   out.charts.push_back(
       animation_chart("animation-" + std::to_string(set), "Playing: " + name, *runs, turns.moments, end_s));
-  auto picture = take_picture(context, scene, 0.6 * end_s, "adaptive-animation-" + std::to_string(set),
-                              name + ", at three fifths of its time");
-  if (!picture) return forward_error(picture);
-  out.pictures.push_back(std::move(*picture));
+  keep_picture(take_picture(context, scene, 0.6 * end_s, "adaptive-animation-" + std::to_string(set),
+                            name + ", at three fifths of its time"),
+               out.pictures, out.failures);
   if (set != 4) return {};
   turns.moments.assign(context.quick ? 4 : 20, end_s);
   turns.warm_up = context.quick ? 6 : 60;  // until what is kept is recorded and what is hidden is known

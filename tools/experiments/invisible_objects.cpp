@@ -13,6 +13,7 @@
 #include "tools/experiments/octree_or_bvh.h"
 #include "tools/experiments/paper.h"
 #include "tools/experiments/scenes.h"
+#include "tools/report/report.h"
 
 namespace scenegen::tools {
 
@@ -203,17 +204,18 @@ void judge_queries(const ExperimentContext& context, std::size_t count, double s
   const auto theirs = paper.number(row, "invisible_objects");
   const auto theirs_ms = paper.number(row, "query_ms");
   if (!theirs || !theirs_ms) return;
+  const auto shown = static_cast<double>(count);
   out.push_back(judged(
-      {"D table 2", sized(context, "objects found invisible by " + human_count(count) + " queries"), "", "",
+      {"D table 2", sized(context, "objects found invisible by " + figure_text(shown) + " queries"), "", "",
        Finding::level,
        (context.quick ? "of fewer boxes than D's 300 000; " : "") +
            std::string(
                "ours ask with the tight box of what is below a node; D does not give density and view")},
       100 * share, 100 * *theirs / kPaperObjects, "%", Better::higher));
   if (count == 100) return;
-  const double each = 1e3 / static_cast<double>(count);
+  const double each = 1e3 / shown;
   out.push_back(
-      judged({"D table 2", "time of a query on the device, of " + human_count(count), "", "", Finding::level,
+      judged({"D table 2", "time of a query on the device, of " + figure_text(shown), "", "", Finding::level,
               on_device(context, "the first boxes cover nearly all of the " + std::to_string(context.width) +
                                      "x" + std::to_string(context.height) +
                                      " pixels; D does not give its picture's size")},
@@ -312,11 +314,12 @@ Result<DocumentSection> invisible_objects(const ExperimentContext& context) {
       "exact for the "
       "size of the picture, and D does not give its density or view. Device: the pass with the queries less "
       "one without.";
-  auto picture = take_picture(context, scene, 0, "invisible-objects", human_count(count) + " random boxes");
-  if (!picture) return forward_error(picture);
+  std::vector<Picture> pictures;
+  keep_picture(take_picture(context, scene, 0, "invisible-objects", human_count(count) + " random boxes"),
+               pictures, out.failures);
   out.blocks.emplace_back(std::move(figures.table));
   out.blocks.emplace_back(std::move(figures.chart));
-  out.blocks.emplace_back(std::move(*picture));
+  for (Picture& picture : pictures) out.blocks.emplace_back(std::move(picture));
   return out;
 }
 

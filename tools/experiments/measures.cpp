@@ -171,6 +171,14 @@ Result<Picture> take_picture(const ExperimentContext& context, const Scene& scen
   return Picture{"picture-" + id, title, file, {}};
 }
 
+void keep_picture(Result<Picture> picture, std::vector<Picture>& pictures, std::vector<Failure>& failures) {
+  if (picture) {
+    pictures.push_back(std::move(*picture));
+  } else {
+    failures.push_back({"a picture", picture.error().str()});
+  }
+}
+
 Result<void> attempt(const std::function<Result<void>()>& work) {
   try {
     return work();

@@ -79,6 +79,9 @@ struct Turns {
 [[nodiscard]] Result<Picture> take_picture(const ExperimentContext& context, const Scene& scene,
                                            double time_s, const std::string& id, const std::string& title);
 
+/// One that cannot be made (a full disk) is a failure of its own, so that what was measured is kept.
+void keep_picture(Result<Picture> picture, std::vector<Picture>& pictures, std::vector<Failure>& failures);
+
 /// `work`, with what it throws as an error: too little memory, a limit of the device. A case that fails so is
 /// one that failed; the rest of its experiment goes on.
 [[nodiscard]] Result<void> attempt(const std::function<Result<void>()>& work);

@@ -77,6 +77,7 @@ struct Figures {
                           {}};
   std::vector<double> still_ratios, gains;
   std::vector<Verdict> still_verdicts, animation_verdicts;
+  std::vector<Failure> failures;
 };
 
 /// A frame's, mean over the frames.
@@ -235,10 +236,9 @@ Result<void> add_set(const ExperimentContext& context, int set, Figures& out,
     if (auto done = add_animation(context, subject, from, out); !done) return done;
   }
   if (!pictures.empty()) return {};
-  auto picture =
-      take_picture(context, scene, scene.duration_s, "merged-batch", name + ", at the end of its time");
-  if (!picture) return forward_error(picture);
-  pictures.push_back(std::move(*picture));
+  keep_picture(
+      take_picture(context, scene, scene.duration_s, "merged-batch", name + ", at the end of its time"),
+      pictures, out.failures);
   return {};
 }
 
@@ -252,16 +252,15 @@ std::string range_of(const std::vector<double>& values) {
 Result<DocumentSection> merged_batch(const ExperimentContext& context) {
   Figures figures;
   std::vector<Picture> pictures;
-  std::vector<Failure> failures;
   for (int set = 1; set <= 4; ++set) {
     if (context.quick && set != 1 && set != 3) continue;
     // The larger ones need not fit where the smaller do.
     if (auto done = attempt([&] { return add_set(context, set, figures, pictures); }); !done)
-      failures.push_back({"merged-batch, " + stand_in_name(set), done.error().str()});
+      figures.failures.push_back({"merged-batch, " + stand_in_name(set), done.error().str()});
   }
   if (figures.still_ratios.empty() || figures.gains.empty())
     return fail(ErrorKind::no_device, "device '" + context.device_info.name + "'",
-                "no scene could be drawn; the first: " + failures.front().why);
+                "no scene could be drawn; the first: " + figures.failures.front().why);
   figures.still.note =
       "D table 33: a commercial library of the time without and with its optimizations, on scenes 1 to 4. In "
       "its place "
@@ -287,7 +286,7 @@ Result<DocumentSection> merged_batch(const ExperimentContext& context) {
   out.verdicts = std::move(figures.still_verdicts);
   out.verdicts.insert(out.verdicts.end(), figures.animation_verdicts.begin(),
                       figures.animation_verdicts.end());
-  out.failures = std::move(failures);
+  out.failures = std::move(figures.failures);
   return out;
 }
 

@@ -13,6 +13,7 @@
 #include "tools/experiments/measures.h"
 #include "tools/experiments/paper.h"
 #include "tools/experiments/scenes.h"
+#include "tools/report/report.h"
 
 namespace scenegen::tools {
 namespace {
@@ -121,12 +122,12 @@ void judge_technique(const Technique& technique, std::uint32_t objects, const Re
                                     with_unit((*record + *submit) * ns, "ns") +
                                     " on D's machine: what the driver and the processor make of it";
   out.verdicts.push_back(judged(
-      {"D tables 3-5", "recording and submitting " + human_count(objects) + " objects, " + technique.title,
+      {"D tables 3-5", "recording and submitting " + figure_text(objects) + " objects, " + technique.title,
        "", "", Finding::level, why},
       ours_ms, *record + *submit, "ms", Better::lower));
   if (const auto memory = paper.number(row, "memory_mb"); memory && technique.each > 0) {
     out.verdicts.push_back(judged(
-        {"D tables 3-5", "memory of the process, " + human_count(objects) + " objects, " + technique.title,
+        {"D tables 3-5", "memory of the process, " + figure_text(objects) + " objects, " + technique.title,
          "", "", Finding::level,
          memory_each + " of commands an object, as the driver keeps them; D's was another driver"},
         static_cast<double>(r.process_bytes) * 1e-6, *memory, "MB", Better::lower));
@@ -260,7 +261,7 @@ Result<void> add_grid(const ExperimentContext& context, std::uint32_t side, Indi
     if (theirs) out.chart.series[at + 3].points.push_back({static_cast<double>(count), *theirs, {}, {}});
     if (!theirs || ours_ms < 0 || side != sides_of(context).back()) return;
     found.verdicts.push_back(
-        judged({"D table 6", human_count(count) + " objects, " + what, "", "", Finding::level, why}, ours_ms,
+        judged({"D table 6", figure_text(count) + " objects, " + what, "", "", Finding::level, why}, ours_ms,
                *theirs, "ms", Better::lower));
   };
   add(0, indirect_ms, "draw_indirect_gpu_ms", "indirect, culled by the device",
@@ -315,9 +316,10 @@ Result<DocumentSection> recording(const ExperimentContext& context) {
     if (auto done = attempt([&] { return add_grid(context, side, indirect, found); }); !done)
       found.failures.push_back({"recording, grid of " + human_count(side * side * side), done.error().str()});
   }
-  auto picture = take_picture(context, random_boxes(context.quick ? 2000 : 10000, context.seed), 0,
-                              "recording", "Random boxes");
-  if (!picture) return forward_error(picture);
+  std::vector<Picture> pictures;
+  keep_picture(take_picture(context, random_boxes(context.quick ? 2000 : 10000, context.seed), 0, "recording",
+                            "Random boxes"),
+               pictures, found.failures);
   DocumentSection out{"recording", "Recording and submitting commands", {}, {}};
   out.paragraphs.push_back(found.sentence + ".");
   out.paragraphs.emplace_back(
@@ -328,7 +330,7 @@ Result<DocumentSection> recording(const ExperimentContext& context) {
     out.blocks.emplace_back(std::move(indirect.table));
     out.blocks.emplace_back(std::move(indirect.chart));
   }
-  out.blocks.emplace_back(std::move(*picture));
+  for (Picture& picture : pictures) out.blocks.emplace_back(std::move(picture));
   out.verdicts = std::move(found.verdicts);
   out.failures = std::move(found.failures);
   return out;

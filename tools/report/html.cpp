@@ -133,12 +133,10 @@ std::string glance_html(const DocumentSection& section, std::size_t run, const T
 }
 
 std::string finding_html(Finding finding) {
-  constexpr std::array<std::string_view, 5> kWords{"better", "level", "worse", "as the paper",
-                                                   "not as the paper"};
   constexpr std::array<std::string_view, 5> kLooks{"better", "level", "worse", "better", "worse"};
   const auto at = static_cast<std::size_t>(finding);
   return "<span class=\"" + std::string(kLooks[at]) + "\"><span aria-hidden=\"true\">" +
-         std::string(sign_of(finding)) + "</span> " + std::string(kWords[at]) + "</span>";
+         std::string(sign_of(finding)) + "</span> " + std::string(word_of(finding)) + "</span>";
 }
 
 /// The paper's tables and claims, a line each.
@@ -156,7 +154,7 @@ std::string verdicts_html(const ReportRun& run) {
   if (rows.empty()) return {};
   return "<table class=\"verdicts\">\n<thead><tr><th scope=\"col\">paper\u2019s table</th><th "
          "scope=\"col\">what</th><th scope=\"col\" class=\"paper\">paper</th><th scope=\"col\">ours</th><th "
-         "scope=\"col\">ours is</th><th scope=\"col\">why</th></tr></thead>\n<tbody>\n" +
+         "scope=\"col\">finding</th><th scope=\"col\">why</th></tr></thead>\n<tbody>\n" +
          rows + "</tbody></table>\n";
 }
 

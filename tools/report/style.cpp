@@ -66,7 +66,7 @@ h2 + .headline { margin-top: 0; }
 .verdicts { margin: 0 0 1.25rem; width: 100%; border: 1px solid var(--line); border-radius: 0.4rem; }
 .verdicts th, .verdicts td { padding: 0.35rem 0.6rem; position: static; }
 .verdicts tbody th { font-weight: 600; white-space: nowrap; } .verdicts .ours { font-weight: 600; }
-.verdicts td { overflow-wrap: anywhere; min-width: 4.5rem; } .verdicts td:last-child { min-width: 14rem; }
+.verdicts td { overflow-wrap: anywhere; min-width: 4.5rem; } .verdicts td:nth-child(2) { min-width: 9.5rem; } .verdicts td:last-child { min-width: 14rem; }
 .verdicts .key { display: none; } .verdicts tr { break-inside: avoid; }
 
 .facts { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 18rem), 1fr)); gap: 0.35rem 1.5rem; margin: 0; font-size: 0.875rem; }

@@ -141,7 +141,7 @@ std::string verdicts_text(const Document& document) {
                     std::string(sign_of(v.finding)) + " " + std::string(word_of(v.finding)), plain(v.why)});
   }
   if (rows.empty()) return {};
-  return row_text({"paper's table", "what", "paper", "ours", "ours", "why"}) +
+  return row_text({"paper's table", "what", "paper", "ours", "finding", "why"}) +
          rule_text({false, false, true, true, false, false}) + rows + "\n";
 }
 
