@@ -197,7 +197,7 @@ Result<ordered_json> read_bench(const std::string& path) {
   if (const auto bytes = fs::file_size(file, error); !error && bytes > kMost)
     return fail(ErrorKind::bad_input, file, "is above 256 MiB");
   const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  ordered_json out = json_too_deep(text) ? ordered_json() : ordered_json::parse(text, nullptr, false);
+  ordered_json out = json_excess(text).empty() ? ordered_json::parse(text, nullptr, false) : ordered_json();
   if (!out.is_object() || member(out, "schema") != kBenchSchema)
     return fail(ErrorKind::bad_input, file, "is no result of sceneplay bench");
   if (const ordered_json version = member(out, "version"); version != kBenchVersion)

@@ -6,6 +6,7 @@
 #include "gen/generate.h"
 #include "scene/gltf/read.h"
 #include "timeline/appearance.h"
+#include "tools/read_gltf.h"
 
 namespace scenegen::tools {
 namespace {
@@ -55,7 +56,7 @@ Result<Scene> make(const QuickScene& q) {
 
 BenchScene scene_of_file(const std::string& file) {
   return {file, [file]() -> Result<Scene> {
-            auto read = gltf::read(file, {});
+            auto read = read_gltf(file, {});
             if (!read) return forward_error(read);
             return std::move(read->scene);
           }};

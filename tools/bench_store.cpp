@@ -109,7 +109,8 @@ Result<std::optional<BenchRun>> RunStore::find(const BenchCase& what, std::uint3
   const std::string from = path(what, repetition);
   std::ifstream file(from, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  const ordered_json json = json_too_deep(text) ? ordered_json() : ordered_json::parse(text, nullptr, false);
+  const ordered_json json =
+      json_excess(text).empty() ? ordered_json::parse(text, nullptr, false) : ordered_json();
   if (!json.is_object() || !json.contains("settings") || !json.contains("run") ||
       json.value("case", "") != what.key())
     return std::optional<BenchRun>();

@@ -265,7 +265,8 @@ Result<nlohmann::ordered_json> read_config_file(const std::string& path) {
   auto text = read_small_file(path);
   if (!text) return forward_error(text);
   nlohmann::ordered_json document;
-  if (json_too_deep(*text)) return fail(ErrorKind::bad_input, path, "is nested deeper than 64 levels");
+  if (const std::string_view excess = json_excess(*text); !excess.empty())
+    return fail(ErrorKind::bad_input, path, std::string(excess));
   try {
     document = nlohmann::ordered_json::parse(*text);
   } catch (const nlohmann::json::exception& error) {

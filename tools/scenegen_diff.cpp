@@ -2,6 +2,7 @@
 #include "scene/gltf/read.h"
 #include "timeline/compare.h"
 #include "tools/output.h"
+#include "tools/read_gltf.h"
 #include "tools/scenegen.h"
 #include "tools/verb.h"
 
@@ -51,9 +52,9 @@ Report report(const DiffRequest& r, const timeline::Comparison& comparison, std:
 
 /// The exit code: 1 when they differ.
 Result<int> diff(const DiffRequest& r) {
-  auto a = gltf::read(r.a);
+  auto a = read_gltf(r.a);
   if (!a) return forward_error(a);
-  auto b = gltf::read(r.b);
+  auto b = read_gltf(r.b);
   if (!b) return forward_error(b);
   timeline::CompareOptions options;
   options.transform_tolerance = static_cast<float>(r.tolerance);

@@ -5,6 +5,7 @@
 #include "scene/optimize/optimize.h"
 #include "timeline/timeline.h"
 #include "tools/output.h"
+#include "tools/read_gltf.h"
 #include "tools/scenegen.h"
 #include "tools/scenegen_options.h"
 #include "tools/verb.h"
@@ -71,7 +72,7 @@ Result<Optimized> run(const OptimizeRequest& r) {
   Optimized out;
   file_options.later = &out.files;
   Progress progress("reading " + r.input, 0, r.quiet);
-  auto read = gltf::read(r.input, {.keep_source = true});
+  auto read = read_gltf(r.input, {.keep_source = true});
   if (!read) return forward_error(read);
   auto before = gltf::survey(*read);
   if (!before) return forward_error(before);

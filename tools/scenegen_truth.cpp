@@ -9,6 +9,7 @@
 #include "timeline/player.h"
 #include "tools/frame_times.h"
 #include "tools/output.h"
+#include "tools/read_gltf.h"
 #include "tools/scenegen.h"
 #include "tools/verb.h"
 
@@ -188,7 +189,7 @@ Written write_moments(const Scene& scene, const std::optional<std::vector<double
 Result<void> save(const TruthRequest& r) {
   gltf::ReadOptions options;
   options.threads = r.threads;
-  auto read = gltf::read(r.file, options);
+  auto read = read_gltf(r.file, options);
   if (!read) return forward_error(read);
   const Scene& scene = read->scene;
   std::optional<std::vector<double>> times_s;

@@ -2,6 +2,7 @@
 #include "scene/gltf/read.h"
 #include "tools/camera_paths.h"
 #include "tools/output.h"
+#include "tools/read_gltf.h"
 #include "tools/sceneplay.h"
 #include "tools/verb.h"
 
@@ -14,7 +15,7 @@ struct CameraPathRequest {
 };
 
 Result<void> save(const CameraPathRequest& r) {
-  auto read = gltf::read(r.file, {});
+  auto read = read_gltf(r.file, {});
   if (!read) return forward_error(read);
   auto path = camera_path_of(r.path, read->scene);
   if (!path) return forward_error(path);

@@ -22,6 +22,7 @@
 #include "tools/frame_times.h"
 #include "tools/memory_fields.h"
 #include "tools/output.h"
+#include "tools/read_gltf.h"
 #include "tools/sceneplay.h"
 #include "tools/trace.h"
 #include "tools/verb.h"
@@ -320,7 +321,7 @@ tl::unexpected<Error> without_pictures_lost(Error error, const FramesRequest& re
 
 Result<void> draw(const FramesRequest& request, const Options& options) {
   const Stopwatch watch;
-  auto read = gltf::read(request.file, {});
+  auto read = read_gltf(request.file, {});
   if (!read) return forward_error(read);
   const Scene& scene = read->scene;
   auto camera = request.camera_path.empty()
@@ -356,15 +357,21 @@ Result<void> draw(const FramesRequest& request, const Options& options) {
     if (auto written = write_file(request.report, pretty(json)); !written)
       return without_pictures_lost(std::move(written.error()), request);
   }
+  // A report on stdout must be all there is on it.
+  const auto say = [&](const std::string& text) -> Result<void> {
+    if (request.report != "-") return write_stdout(text);
+    (void)std::fputs(text.c_str(), stderr);
+    return {};
+  };
   if (request.memory) {
-    if (auto written = write_stdout(memory_table(filming.memory())); !written) return written;
+    if (auto written = say(memory_table(filming.memory())); !written) return written;
   }
   if (request.quiet) return {};
-  return write_stdout(request.folder + "  " + human_count(times->size()) +
-                      (times->size() == 1 ? " frame  " : " frames  ") +
-                      std::to_string(request.drawing.size.x) + "x" + std::to_string(request.drawing.size.y) +
-                      "  " + human_bytes(filming.bytes()) + "  " + human_count(objects) + " objects  " +
-                      filming.renderer().device().name + "  " + human_seconds(watch.seconds()) + "\n");
+  return say(request.folder + "  " + human_count(times->size()) +
+             (times->size() == 1 ? " frame  " : " frames  ") + std::to_string(request.drawing.size.x) + "x" +
+             std::to_string(request.drawing.size.y) + "  " + human_bytes(filming.bytes()) + "  " +
+             human_count(objects) + " objects  " + filming.renderer().device().name + "  " +
+             human_seconds(watch.seconds()) + "\n");
 }
 
 void add_options(Options& options, FramesRequest& r) {

@@ -219,7 +219,8 @@ std::vector<ordered_json> entries_kept(const SweepPlan& plan, const std::string&
   std::vector<ordered_json> out(plan.scenes.size());
   std::ifstream in(fs::path(folder) / "index.json", std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  const ordered_json index = json_too_deep(text) ? ordered_json() : ordered_json::parse(text, nullptr, false);
+  const ordered_json index =
+      json_excess(text).empty() ? ordered_json::parse(text, nullptr, false) : ordered_json();
   const auto is = [](const ordered_json& json, const char* name, const ordered_json& value) {
     return json.is_object() && json.contains(name) && json[name] == value;
   };

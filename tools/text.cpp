@@ -238,9 +238,11 @@ std::vector<std::string> wrap(std::string_view text, std::size_t width) {
   return lines;
 }
 
-bool json_too_deep(std::string_view json) {
-  constexpr int kMost = 64;
-  int depth = 0;
+std::string_view json_excess(std::string_view json) {
+  constexpr std::size_t kMostLevels = 64;
+  constexpr std::uint32_t kMostMembers = 1000;
+  std::array<std::uint32_t, kMostLevels + 1> members{};
+  std::size_t depth = 0;
   bool in_string = false;
   for (std::size_t i = 0; i < json.size(); ++i) {
     const char c = json[i];
@@ -250,12 +252,15 @@ bool json_too_deep(std::string_view json) {
     } else if (c == '"') {
       in_string = true;
     } else if (c == '[' || c == '{') {
-      if (++depth > kMost) return true;
+      if (depth == kMostLevels) return "is nested deeper than 64 levels";
+      members[++depth] = 0;
     } else if (c == ']' || c == '}') {
-      --depth;
+      if (depth > 0) --depth;
+    } else if (c == ':') {
+      if (++members[depth] > kMostMembers) return "has an object of more than 1000 members";
     }
   }
-  return false;
+  return {};
 }
 
 }  // namespace scenegen::tools

@@ -47,10 +47,10 @@ namespace scenegen::tools {
 /// `digits` behind the point, trailing zeros dropped: (0.95, 3) is "0.95".
 [[nodiscard]] std::string human_real(double value, int digits);
 
-/// Whether objects and arrays of a JSON text lie deeper in each other than any of ours: nlohmann copies and
-/// destroys values by recursion, which a file of 200 000 brackets would end on the stack. For use before
-/// parsing.
-[[nodiscard]] bool json_too_deep(std::string_view json);
+/// What makes a JSON text unlike any of ours, empty if nothing does; for use before parsing. "is nested
+/// deeper than 64 levels": nlohmann copies and destroys values by recursion, which a file of 200 000 brackets
+/// would end on the stack. "has an object of more than 1000 members": they are compared with each other.
+[[nodiscard]] std::string_view json_excess(std::string_view json);
 
 /// Breaks at blanks so that no line is longer than `width` characters (UTF-8 code points).
 [[nodiscard]] std::vector<std::string> wrap(std::string_view text, std::size_t width);

@@ -126,4 +126,12 @@ TEST_CASE("wrong calls and damaged files") {
   CHECK(bad.code == 1);
   CHECK_THAT(bad.err, Catch::Matchers::StartsWith("error: bad.glb: "));
   CHECK(folder.entries() == std::vector<std::string>{"bad.glb", "in.glb"});
+  // A model that other verbs read.
+  write_file(folder.file("house.IFC"), "ISO-10303-21;\nHEADER;\nENDSEC;\nEND-ISO-10303-21;\n");
+  const std::string other =
+      "house.IFC: is no glTF, and only that is read here; scenegen animate and scenegen schedule make a .glb "
+      "of "
+      "'.ifc'";
+  refused(folder, "optimize house.IFC -o out.glb", 1, other);
+  refused(folder, "diff in.glb house.IFC", 1, other);
 }

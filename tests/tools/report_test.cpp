@@ -270,10 +270,10 @@ TEST_CASE("sceneplay report says what is wrong in one line, and leaves nothing b
   damaged(R"({"schema": "sceneplay/experiment", "version": 1})", ": /document: is missing\n");
   damaged(R"({"schema": "sceneplay/experiment", "version": 1, "document": {"title": 1}})",
           ": /document/title: is not text\n");
-  damaged(std::string(200'000, '['), ": is damaged: nested deeper than 64 levels");
+  damaged(std::string(200'000, '['), ": is damaged: it is nested deeper than 64 levels");
   damaged(R"({"schema":"sceneplay/experiment","version":)" + std::string(200'000, '[') +
               std::string(200'000, ']') + "}",
-          ": is damaged: nested deeper than 64 levels");
+          ": is damaged: it is nested deeper than 64 levels");
   CHECK_FALSE(std::filesystem::exists(folder.file("x.html")));
 }
 

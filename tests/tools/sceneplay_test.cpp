@@ -154,6 +154,13 @@ TEST_CASE("frames: files, names, report and the line at the end") {
   CHECK(again.out.empty());
   for (const char* name : {"frame_00000.png", "frame_00001.png", "frame_00002.png"})
     CHECK(read_file(out + "/" + name) == read_file(folder.file("again") + "/" + name));
+  // A report on stdout is all there is on it.
+  const auto piped =
+      play("frames " + file + " -o " + folder.file("piped") + " --size 64x36 --times 0 --memory --report -");
+  CHECK(piped.code == 0);
+  CHECK(nlohmann::json::parse(piped.out)["frames"].size() == 1);
+  CHECK_THAT(piped.err,
+             Catch::Matchers::Contains("1 frame  64x36") && Catch::Matchers::Contains("B an object"));
 }
 
 TEST_CASE("frames: what adaptive took, why, and what every way should take") {

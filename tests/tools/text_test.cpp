@@ -98,13 +98,20 @@ TEST_CASE("lines break at blanks") {
   CHECK(display_width("naïve") == 5);
 }
 
-TEST_CASE("JSON that is nested too deeply is told from JSON with brackets in its words") {
-  CHECK_FALSE(json_too_deep(""));
-  CHECK_FALSE(json_too_deep(std::string(64, '[') + std::string(64, ']')));
-  CHECK(json_too_deep(std::string(65, '[') + std::string(65, ']')));
-  CHECK(json_too_deep(std::string(200'000, '{')));
-  CHECK_FALSE(json_too_deep("[\"" + std::string(100, '[') + "\\\"" + std::string(100, '{') + "\"]"));
+TEST_CASE("JSON that is nested too deeply or too wide is told from JSON with brackets in its words") {
+  constexpr std::string_view kDeep = "is nested deeper than 64 levels";
+  constexpr std::string_view kWide = "has an object of more than 1000 members";
+  CHECK(json_excess("").empty());
+  CHECK(json_excess(std::string(64, '[') + std::string(64, ']')).empty());
+  CHECK(json_excess(std::string(65, '[') + std::string(65, ']')) == kDeep);
+  CHECK(json_excess(std::string(200'000, '{')) == kDeep);
+  CHECK(json_excess("[\"" + std::string(100, '[') + "\\\"" + std::string(100, '{') + "\"]").empty());
+  CHECK(json_excess("]]]]{}").empty());  // no JSON, which the parser says
   std::string flat = "[";
   for (int i = 0; i < 1000; ++i) flat += "[1],";
-  CHECK_FALSE(json_too_deep(flat + "1]"));
+  CHECK(json_excess(flat + "1]").empty());
+  std::string wide = "{\"a\":{";  // 1000 members, and a thousand colons in names
+  for (int i = 0; i < 1000; ++i) wide += (i == 0 ? "\"" : ",\"") + std::to_string(i) + ":\":{\"b\":0}";
+  CHECK(json_excess(wide + "}}").empty());
+  CHECK(json_excess(wide + ",\"one more\":0}}") == kWide);
 }

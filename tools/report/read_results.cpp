@@ -33,8 +33,8 @@ Result<std::string> read_text(const std::string& file) {
 }
 
 Result<ordered_json> parse(const std::string& file, const std::string& text) {
-  if (json_too_deep(text))
-    return fail(ErrorKind::bad_input, file, "is damaged: nested deeper than 64 levels");
+  if (const std::string_view excess = json_excess(text); !excess.empty())
+    return fail(ErrorKind::bad_input, file, "is damaged: it " + std::string(excess));
   try {
     return ordered_json::parse(text);
   } catch (const nlohmann::json::exception& error) {
