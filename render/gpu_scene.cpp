@@ -308,7 +308,8 @@ void GpuScene::upload_records(std::span<const ObjectRecord> records) {
 
 void GpuScene::add_memory(MemoryAccount& to) const {
   to.add_host(MemoryKind::geometry, held_bytes(ranges_, work_));
-  to.add_host(MemoryKind::records, held_bytes(material_records_, dirty_materials_));
+  to.add_host(MemoryKind::records,
+              held_bytes(material_records_, dirty_materials_, record_copies_, material_copies_));
   to.add_host(MemoryKind::textures,
               held_bytes(images_, samplers_, texture_sets_, texture_masks_, image_index_));
 }
@@ -363,37 +364,37 @@ std::uint64_t GpuScene::record_updates(vkr::Frame& frame, vkr::Barriers& barrier
   std::byte* staging = frame.staging.reserve(memory_, bytes);
   std::memcpy(staging, &camera, sizeof(camera));
   if (!records.empty()) std::memcpy(staging + records_at, records.data(), records.size_bytes());
-  std::vector<vk::BufferCopy> material_copies;
+  material_copies_.clear();
   for (std::size_t i = 0; i < dirty_materials_.size(); ++i) {
     const std::uint64_t from = materials_at + i * sizeof(MaterialRecord);
     std::memcpy(staging + from, &material_records_[dirty_materials_[i]], sizeof(MaterialRecord));
-    material_copies.emplace_back(from, dirty_materials_[i] * sizeof(MaterialRecord), sizeof(MaterialRecord));
+    material_copies_.emplace_back(from, dirty_materials_[i] * sizeof(MaterialRecord), sizeof(MaterialRecord));
   }
-  std::vector<vk::BufferCopy> record_copies;  // neighbouring slots in one region
+  record_copies_.clear();  // neighbouring slots in one region
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const std::uint64_t from = records_at + i * sizeof(ObjectRecord);
     const std::uint64_t to = slots[i] * sizeof(ObjectRecord);
-    if (!record_copies.empty() && record_copies.back().dstOffset + record_copies.back().size == to) {
-      record_copies.back().size += sizeof(ObjectRecord);
+    if (!record_copies_.empty() && record_copies_.back().dstOffset + record_copies_.back().size == to) {
+      record_copies_.back().size += sizeof(ObjectRecord);
     } else {
-      record_copies.emplace_back(from, to, sizeof(ObjectRecord));
+      record_copies_.emplace_back(from, to, sizeof(ObjectRecord));
     }
   }
   dirty_materials_.clear();
 
   const auto both = [&](Use before, Use after) {
     barriers.buffer(*camera_.buffer, before, after);
-    if (!record_copies.empty()) barriers.buffer(*records_.buffer, before, after);
-    if (!material_copies.empty()) barriers.buffer(*materials_.buffer, before, after);
+    if (!record_copies_.empty()) barriers.buffer(*records_.buffer, before, after);
+    if (!material_copies_.empty()) barriers.buffer(*materials_.buffer, before, after);
     barriers.flush(frame.commands);
   };
   both(Use::shader_data, Use::transfer_write);
   frame.commands.copyBuffer(frame.staging.buffer(), *camera_.buffer,
                             vk::BufferCopy(0, 0, sizeof(CameraBlock)));
-  if (!record_copies.empty())
-    frame.commands.copyBuffer(frame.staging.buffer(), *records_.buffer, record_copies);
-  if (!material_copies.empty())
-    frame.commands.copyBuffer(frame.staging.buffer(), *materials_.buffer, material_copies);
+  if (!record_copies_.empty())
+    frame.commands.copyBuffer(frame.staging.buffer(), *records_.buffer, record_copies_);
+  if (!material_copies_.empty())
+    frame.commands.copyBuffer(frame.staging.buffer(), *materials_.buffer, material_copies_);
   both(Use::transfer_write, Use::shader_data);
   return bytes;
 }

@@ -88,6 +88,7 @@ class GpuScene {
   vkr::Buffer upload_;
   std::vector<MaterialRecord> material_records_;
   std::vector<std::uint32_t> dirty_materials_;
+  std::vector<vk::BufferCopy> record_copies_, material_copies_;  // scratch of record_updates()
   std::vector<vkr::Image> images_;
   std::vector<std::pair<Sampler, vk::raii::Sampler>> samplers_;
   vk::raii::Sampler shadow_sampler_{nullptr};

@@ -3,7 +3,6 @@
 #include <cassert>
 #include <chrono>
 #include <cstring>
-#include <deque>
 #include <new>
 #include <optional>
 
@@ -43,23 +42,25 @@ struct Renderer::State {
   std::unique_ptr<Strategy> strategy;
   std::optional<Target> color, ids, shadow;
   std::optional<vkr::FrameRing> ring;
+  vkr::Barriers barriers;  // empty between frames; kept for its room
   struct Unfinished {
-    vkr::Frame* frame;
+    vkr::Frame* frame = nullptr;
     FrameReport report;
     std::vector<ChunkBox> chunk_boxes;
   };
-  std::deque<Unfinished> unfinished;
+  std::array<Unfinished, kMostFramesInFlight> unfinished;  // a ring
+  std::size_t oldest = 0, unfinished_count = 0;
   std::optional<Error> failed;  // then what is half done is good for nothing but being destroyed
 
   void build(const Scene& source, const timeline::Player& player);
   [[nodiscard]] Result<void> check_size(glm::uvec2 size) const;
   void make_targets();
-  [[nodiscard]] PassContext context(vkr::Frame& frame, vkr::Barriers& barriers);
+  [[nodiscard]] PassContext context(vkr::Frame& frame);
   vkr::Buffer& readback(vkr::Buffer& buffer);
   void update(const timeline::ChangeSet& changes, const timeline::Player& player, FrameReport& report);
-  void record_shadows(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report);
-  void record_color(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report);
-  void record_ids(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report);
+  void record_shadows(vkr::Frame& frame, FrameReport& report);
+  void record_color(vkr::Frame& frame, FrameReport& report);
+  void record_ids(vkr::Frame& frame, FrameReport& report);
   void submit(const timeline::ChangeSet& changes, const timeline::Player& player, const View& view);
   [[nodiscard]] StrategyContext strategy_context() const {
     return {*scene,
@@ -115,6 +116,7 @@ Result<void> Renderer::State::guarded(const Body& body) {
 void Renderer::State::build(const Scene& source, const timeline::Player& player) {
   const auto samples = options.samples == 4 ? vk::SampleCountFlagBits::e4 : vk::SampleCountFlagBits::e1;
   const TextureSets sets = texture_sets(source);
+  barriers = vkr::Barriers(options.full_barriers);
   memory.emplace(*device, options.memory_faults);
   pipelines.emplace(*device, samples);
   // Before the scene, which may lie in memory of the host where targets may not.
@@ -151,7 +153,7 @@ void Renderer::State::make_targets() {
     ids = make_target(*device, *memory, *pipelines, vkr::PassKind::ids, extent, vk::SampleCountFlagBits::e1);
 }
 
-PassContext Renderer::State::context(vkr::Frame& frame, vkr::Barriers& barriers) {
+PassContext Renderer::State::context(vkr::Frame& frame) {
   return {*device,
           *memory,
           *pipelines,
@@ -183,7 +185,7 @@ void Renderer::State::update(const timeline::ChangeSet& changes, const timeline:
     gpu->set_material_colors(id, player.base_color(id), player.emissive(id));
 }
 
-void Renderer::State::record_shadows(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report) {
+void Renderer::State::record_shadows(vkr::Frame& frame, FrameReport& report) {
   begin_pass(frame.commands, *pipelines, *shadow, barriers);
   if (options.shadows) {
     DrawRecorder recorder(frame.commands, *pipelines, *gpu, *scene, vkr::PassKind::shadow);
@@ -196,8 +198,8 @@ void Renderer::State::record_shadows(vkr::Frame& frame, vkr::Barriers& barriers,
   frame.mark(frame.commands, GpuStage::shadows);
 }
 
-void Renderer::State::record_color(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report) {
-  PassRecording pass(context(frame, barriers), *color);
+void Renderer::State::record_color(vkr::Frame& frame, FrameReport& report) {
+  PassRecording pass(context(frame), *color);
   strategy->draw_solid(pass);
   const vk::raii::CommandBuffer& rest = pass.rest();
   frame.mark(rest, pass.in_second_part() ? GpuStage::second_part : GpuStage::solid);
@@ -218,8 +220,8 @@ void Renderer::State::record_color(vkr::Frame& frame, vkr::Barriers& barriers, F
   report.state_changes = all.state_changes;
 }
 
-void Renderer::State::record_ids(vkr::Frame& frame, vkr::Barriers& barriers, FrameReport& report) {
-  PassRecording pass(context(frame, barriers), *ids);
+void Renderer::State::record_ids(vkr::Frame& frame, FrameReport& report) {
+  PassRecording pass(context(frame), *ids);
   strategy->draw_solid(pass);
   pass.end();
   frame.mark(frame.commands, GpuStage::ids);
@@ -246,7 +248,6 @@ void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline:
 
   start = Clock::now();
   vkr::Frame& frame = ring->begin();
-  vkr::Barriers barriers(options.full_barriers);
   const CameraBlock camera = camera_block(view, scene->bounds_m(), options.shadows);
   {
     const StageTimer timer(report.upload_ms);
@@ -255,10 +256,10 @@ void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline:
   }
   frame.mark(frame.commands, GpuStage::updates);
   if (options.outputs.color) {
-    record_shadows(frame, barriers, report);
-    record_color(frame, barriers, report);
+    record_shadows(frame, report);
+    record_color(frame, report);
   }
-  if (options.outputs.ids || options.outputs.depth) record_ids(frame, barriers, report);
+  if (options.outputs.ids || options.outputs.depth) record_ids(frame, report);
   report.record_ms = ms_since(start);
   if (options.predictions) {  // before the device begins: it must not work meanwhile
     const StageTimer timer(report.predict_ms);
@@ -278,8 +279,10 @@ void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline:
     report.verdict = choice->verdict;
     report.choose_ms = choice->choose_s * 1e3;
   }
-  unfinished.push_back(
-      {&frame, report, options.chunk_boxes ? strategy->chunk_boxes() : std::vector<ChunkBox>{}});
+  Unfinished& kept = unfinished[(oldest + unfinished_count++) % unfinished.size()];
+  kept.frame = &frame;
+  kept.report = report;
+  if (options.chunk_boxes) kept.chunk_boxes = strategy->chunk_boxes();
 }
 
 /// What every way of drawing would have cost; what the one that was taken did not find out is estimated.
@@ -303,10 +306,13 @@ void Renderer::State::predict(const timeline::ChangeSet& changes, FrameReport& r
 }
 
 void Renderer::State::finish(FrameResult& out) {
-  assert(!unfinished.empty());
-  auto [frame, report, chunk_boxes] = std::move(unfinished.front());
-  out.chunk_boxes = std::move(chunk_boxes);
-  unfinished.pop_front();
+  assert(unfinished_count > 0);
+  Unfinished& kept = unfinished[oldest];
+  oldest = (oldest + 1) % unfinished.size();
+  --unfinished_count;
+  vkr::Frame* const frame = kept.frame;
+  FrameReport report = kept.report;
+  out.chunk_boxes = std::move(kept.chunk_boxes);
   auto start = Clock::now();
   ring->wait(*frame);
   report.wait_ms = ms_since(start);
@@ -371,7 +377,7 @@ std::uint32_t Renderer::most_in_flight() const {
   return state_->options.frames_in_flight;
 }
 std::uint32_t Renderer::in_flight() const {
-  return static_cast<std::uint32_t>(state_->unfinished.size());
+  return static_cast<std::uint32_t>(state_->unfinished_count);
 }
 
 Result<void> Renderer::submit(const timeline::ChangeSet& changes, const timeline::Player& player,

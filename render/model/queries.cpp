@@ -1,8 +1,8 @@
 #include "render/model/queries.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <vector>
 
 namespace scenegen::render::model {
 namespace {
@@ -11,8 +11,20 @@ double hidden(const LogFit& fit, double x, double all) {
   return x > 0.0 ? std::clamp(fit.at(x), 0.0, all) : 0.0;
 }
 
+/// Numbers of queries to compare: this is asked in every frame, so no memory is.
+class Candidates {
+ public:
+  void add(double x) { values_[count_++] = x; }
+  [[nodiscard]] const double* begin() const { return values_.data(); }
+  [[nodiscard]] const double* end() const { return values_.data() + count_; }
+
+ private:
+  std::array<double, 6> values_{};
+  std::size_t count_ = 0;
+};
+
 /// A root of cpu - gpu in [a, b] if the difference changes its sign there.
-void add_crossing(const QueryProblem& p, double a, double b, std::vector<double>& out) {
+void add_crossing(const QueryProblem& p, double a, double b, Candidates& out) {
   const auto difference = [&](double x) { return query_cpu_s(p, x) - query_gpu_s(p, x); };
   if (!(a < b)) return;
   const bool first = difference(a) > 0.0;
@@ -21,7 +33,7 @@ void add_crossing(const QueryProblem& p, double a, double b, std::vector<double>
     const double middle = 0.5 * (a + b);
     ((difference(middle) > 0.0) == first ? a : b) = middle;
   }
-  out.push_back(0.5 * (a + b));
+  out.add(0.5 * (a + b));
 }
 
 double over(double numerator, double denominator) {
@@ -98,8 +110,10 @@ double stationary_queries(const QueryProblem& p) {
 }
 
 double best_queries(const QueryProblem& p, bool side_by_side) {
-  std::vector<double> candidates{0.0, p.all_nodes};
-  const auto add = [&](double x) { candidates.push_back(std::clamp(x, 0.0, p.all_nodes)); };
+  Candidates candidates;
+  const auto add = [&](double x) { candidates.add(std::clamp(x, 0.0, p.all_nodes)); };
+  add(0.0);
+  add(p.all_nodes);
   if (side_by_side) {
     add(over(saved_on_cpu(p), p.ask_s));
     add(over(saved_on_gpu(p), p.query_s));

@@ -16,8 +16,8 @@ CommandCache::CommandCache(const vkr::Device& device, std::uint64_t fail_after)
 
 void CommandCache::retire(Kept& kept) {
   if (*kept.owner.commands) {
-    retired_.push_back({});  // may throw: what may be running must not have been moved by then
-    retired_.back() = {std::move(kept.owner), kept.last_used};
+    retired_.reserve_one();  // may throw: what may be running must not have been moved by then
+    retired_.push_back({std::move(kept.owner), kept.last_used});
   }
   kept = Kept{};
 }
@@ -95,7 +95,7 @@ const CommandCache::Entry& CommandCache::get(const PassRecording& pass, std::uin
 }
 
 void CommandCache::add_memory(MemoryAccount& to) const {
-  to.add_host(MemoryKind::commands, held_bytes(free_, retired_, kept_[0], kept_[1]));
+  to.add_host(MemoryKind::commands, held_bytes(free_, kept_[0], kept_[1]) + retired_.memory_bytes());
   to.commands.buffers += allocated_;
   to.commands.draws += draws_;
   to.commands.driver += heap_.bytes();

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <span>
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
 
 #include "render/passes/pass_recording.h"
+#include "render/ring_queue.h"
 #include "render/vk/driver_heap.h"
 
 namespace scenegen::render {
@@ -71,7 +71,7 @@ class CommandCache {
   vkr::DriverHeap heap_;  // outlives the pool
   vk::raii::CommandPool pool_{nullptr};
   std::vector<Buffer> free_;
-  std::deque<Retired> retired_;
+  RingQueue<Retired> retired_;
   std::vector<Kept> kept_[2];  // by pass (color, ids) and chunk
   std::uint64_t allocated_ = 0;
   std::uint64_t draws_ = 0;  // in all buffers

@@ -189,7 +189,8 @@ std::size_t IndirectNodes::draw(DrawRecorder& recorder, const Part& part) {
 }
 
 std::uint64_t IndirectNodes::memory_bytes() const {
-  std::uint64_t sum = held_bytes(blocks_, retired_, kept_, changed_, commands_, runs_before_, sent_, copies_);
+  std::uint64_t sum =
+      held_bytes(blocks_, kept_, changed_, commands_, runs_before_, sent_, copies_) + retired_.memory_bytes();
   for (const std::vector<Place>& places : free_) sum += held_bytes(places);
   for (const Kept& kept : kept_) sum += held_bytes(kept.runs);
   return sum;

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <span>
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
 
 #include "render/config.h"
 #include "render/passes/pass_recording.h"
+#include "render/ring_queue.h"
 #include "render/spatial/octree.h"
 
 namespace scenegen::render {
@@ -86,7 +86,7 @@ class IndirectNodes {
   };
   struct Retired {
     Place place;
-    std::uint64_t last_used;
+    std::uint64_t last_used = 0;
   };
   struct Sent {
     std::uint32_t chunk = 0;
@@ -108,7 +108,7 @@ class IndirectNodes {
   std::vector<vkr::Buffer> blocks_;
   std::uint32_t used_ = 0;  // commands of the last block
   std::vector<Place> free_[kSizes + 1];
-  std::deque<Retired> retired_;
+  RingQueue<Retired> retired_;
   std::vector<Kept> kept_;                           // by chunk
   vkr::Buffer staging_[kMostFramesInFlight];         // of each frame in flight
   std::vector<std::uint32_t> changed_;               // scratch

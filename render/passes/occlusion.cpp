@@ -70,6 +70,8 @@ void Occlusion::reserve(const PassContext& context, std::size_t asked, std::size
     const auto room = static_cast<std::uint32_t>(std::max<std::size_t>(asked + asked / 2, 256));
     p.room = 0;
     p.asked.clear();
+    p.asked.reserve(room);  // all at once: how much is asked differs from frame to frame
+    p.samples.reserve(room);
     p.pool =
         vk::raii::QueryPool(device_.device, vk::QueryPoolCreateInfo({}, vk::QueryType::eOcclusion, room));
     if (form_ != Predicates::none) {

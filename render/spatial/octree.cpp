@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <utility>
+#include <functional>
 
 namespace scenegen::render {
 namespace {
+
+// Among places of a node's slots: where the eight children come first.
+constexpr std::size_t kStays = 8;
 
 /// Every third bit of 63, from 21.
 std::uint64_t spread(std::uint64_t v) {
@@ -94,28 +97,93 @@ std::uint64_t Octree::code_in(const Node& node, std::uint32_t slot) const {
   return code;
 }
 
-void Octree::insert(std::uint32_t slot) {
-  assert(!contains(slot));
-  if (boxes_.get(slot).empty()) return;
-  if (in_root(slot)) {
-    descend(0, slot);
-  } else {
-    ++nodes_[0].content.slots;
-    add_to_node(0, slot, false);
+void Octree::insert(std::span<const std::uint32_t> slots) {
+  arriving_.clear();
+  for (const std::uint32_t slot : slots) {
+    assert(!contains(slot));
+    if (!boxes_.get(slot).empty()) arriving_.push_back(slot);
+  }
+  if (!arriving_.empty()) settle(0, 0);
+}
+
+void Octree::find_places(std::uint32_t number, std::size_t first, Places& counts) {
+  const Node& node = nodes_[number];
+  const glm::vec3 centre = node.centre_m;
+  const std::array lo{boxes_.lo[0].data(), boxes_.lo[1].data(), boxes_.lo[2].data()};
+  const std::array hi{boxes_.hi[0].data(), boxes_.hi[1].data(), boxes_.hi[2].data()};
+  const bool last = node.level == options_.most_levels;
+  places_.resize(arriving_.size());
+  for (std::size_t i = first; i < arriving_.size(); ++i) {
+    const std::uint32_t slot = arriving_[i];
+    std::uint32_t child = 0;
+    bool fits = !last;
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+      const bool upper = lo[axis][slot] >= centre[static_cast<int>(axis)];
+      const bool lower = hi[axis][slot] <= centre[static_cast<int>(axis)];
+      fits = fits & (upper | lower);
+      child |= static_cast<std::uint32_t>(upper) << axis;
+    }
+    places_[i] = static_cast<std::uint8_t>(fits ? child : kStays);
+  }
+  for (std::size_t i = first; i < arriving_.size(); ++i) {
+    if (number == 0 && !in_root(arriving_[i]))
+      places_[i] = kStays;  // it holds what lies outside its cell too
+    ++counts[places_[i]];
   }
 }
 
-void Octree::descend(std::uint32_t number, std::uint32_t slot) {
-  for (;;) {
-    ++nodes_[number].content.slots;
-    const Place place = place_in(nodes_[number], slot);
-    if (!place.fits || nodes_[number].level == options_.most_levels) return add_to_node(number, slot, false);
-    if (nodes_[number].leaf()) {
-      if (nodes_[number].fitting < options_.slots_per_node) return add_to_node(number, slot, true);
-      split_node(number);
+void Octree::settle(std::uint32_t number, std::size_t first) {
+  const std::size_t coming = arriving_.size() - first;
+  nodes_[number].content.slots += static_cast<std::uint32_t>(coming);
+  Places counts{};
+  find_places(number, first, counts);
+  if (nodes_[number].leaf()) {
+    if (nodes_[number].fitting + coming - counts[kStays] <= options_.slots_per_node) {
+      add_to_leaf(number, first);
+      arriving_.resize(first);
+      return;
     }
-    number = nodes_[number].first_child + place.child;
+    // What is here already goes with them.
+    (void)new_children(number);
+    take_chunks(number);
+    nodes_[number].fitting = 0;
+    find_places(number, first + coming, counts);
   }
+  std::array<std::size_t, 9> next{};
+  for (std::size_t place = 1; place < next.size(); ++place) next[place] = next[place - 1] + counts[place - 1];
+  const std::size_t all = arriving_.size() - first;
+  sorted_.resize(std::max(sorted_.size(), all));
+  for (std::size_t i = first; i < arriving_.size(); ++i) sorted_[next[places_[i]]++] = arriving_[i];
+  const std::size_t going = all - counts[kStays];
+  std::copy_n(sorted_.begin(), going, arriving_.begin() + static_cast<std::ptrdiff_t>(first));
+  arriving_.resize(first + going);
+  for (std::size_t i = going; i < all; ++i) add_to_node(number, sorted_[i], false);
+  const std::uint32_t first_child = nodes_[number].first_child;
+  for (std::uint32_t child = 8; child-- > 0;) {
+    if (counts[child] > 0) settle(first_child + child, arriving_.size() - counts[child]);
+  }
+}
+
+void Octree::add_to_leaf(std::uint32_t number, std::size_t first) {
+  Node& node = nodes_[number];
+  if (node.chunks.empty()) node.chunks.push_back(new_chunk(number, 0));
+  const std::uint32_t into = node.chunks.front();
+  Chunk& chunk = chunks_[into];
+  const std::size_t coming = arriving_.size() - first;
+  if (node.chunks.size() > 1 || chunk.slots.size() + coming > options_.slots_per_node) {
+    for (std::size_t i = first; i < arriving_.size(); ++i)
+      add_to_node(number, arriving_[i], places_[i] != kStays);
+    return;
+  }
+  for (std::size_t i = first; i < arriving_.size(); ++i) {
+    const std::uint32_t slot = arriving_[i];
+    chunk.slots.push_back(slot);
+    chunk_of_slot_[slot] = into;
+    fits_[slot] = places_[i] != kStays ? 1 : 0;
+    node.fitting += fits_[slot];
+  }
+  if (!chunk.stale) add_content(chunk.content, std::span(arriving_).subspan(first));
+  touch_chunk(into);
 }
 
 std::size_t Octree::chunk_for(const Node& node, std::uint64_t code) const {
@@ -127,18 +195,16 @@ std::size_t Octree::chunk_for(const Node& node, std::uint64_t code) const {
 
 void Octree::add_to_node(std::uint32_t number, std::uint32_t slot, bool fits) {
   Node& node = nodes_[number];
-  const std::uint64_t code = code_in(node, slot);
-  if (node.chunks.empty()) node.chunks.push_back(new_chunk(number, code));
-  const std::size_t at = chunk_for(node, code);
+  if (node.chunks.empty()) node.chunks.push_back(new_chunk(number, 0));
+  const std::size_t at = node.chunks.size() > 1 ? chunk_for(node, code_in(node, slot)) : 0;
   const std::uint32_t into = node.chunks[at];
   Chunk& chunk = chunks_[into];
-  chunk.first_code = std::min(chunk.first_code, code);
   chunk.slots.push_back(slot);
   chunk_of_slot_[slot] = into;
   fits_[slot] = fits ? 1 : 0;
   node.fitting += fits ? 1 : 0;
-  if (adding_ == Change::grown && !chunk.stale) add_to_content(chunk.content, slot);
-  touch_chunk(into, adding_);
+  if (!chunk.stale) add_content(chunk.content, std::span(&slot, 1));
+  touch_chunk(into);
   if (chunk.slots.size() > options_.slots_per_node) split_chunk(number, at);
 }
 
@@ -151,14 +217,16 @@ void Octree::split_chunk(std::uint32_t number, std::size_t at) {
   const std::size_t half = coded_.size() / 2;
   const std::uint32_t made = new_chunk(number, coded_[half].first);
   nodes_[number].chunks.insert(nodes_[number].chunks.begin() + static_cast<std::ptrdiff_t>(at) + 1, made);
+  // A first chunk takes what lies before it.
+  chunks_[old].first_code = std::min(chunks_[old].first_code, coded_.front().first);
   chunks_[old].slots.clear();
   for (std::size_t i = 0; i < coded_.size(); ++i) {
     const std::uint32_t into = i < half ? old : made;
     chunks_[into].slots.push_back(coded_[i].second);
     chunk_of_slot_[coded_[i].second] = into;
   }
-  touch_chunk(old, Change::stale);
-  touch_chunk(made, Change::stale);
+  chunks_[old].stale = chunks_[made].stale = true;
+  touch_chunk(made);
 }
 
 void Octree::join_chunks(std::uint32_t number, std::size_t at) {
@@ -171,59 +239,56 @@ void Octree::join_chunks(std::uint32_t number, std::size_t at) {
     chunks_[keep].slots.push_back(slot);
     chunk_of_slot_[slot] = keep;
   }
-  touch_chunk(keep, Change::stale);
+  chunks_[keep].stale = true;
+  touch_chunk(keep);
   free_chunk(gone);
   list.erase(list.begin() + static_cast<std::ptrdiff_t>(at) + 1);
 }
 
-void Octree::split_node(std::uint32_t number) {
-  std::vector<std::uint32_t> slots;
-  const std::uint32_t first = new_children(number);
-  for (const std::uint32_t chunk : nodes_[number].chunks) {
-    slots.insert(slots.end(), chunks_[chunk].slots.begin(), chunks_[chunk].slots.end());
-    free_chunk(chunk);
-  }
-  nodes_[number].chunks.clear();
-  nodes_[number].fitting = 0;
-  const Change before = std::exchange(adding_, Change::stale);  // one look at each slot, in the end
-  const bool whole = number != 0;  // the root also holds what lies outside its cell
+void Octree::remove(std::span<const std::uint32_t> slots) {
+  // A few are looked for one by one, of many the chunks are gone through once.
+  const bool many = slots.size() > 4 * chunk_count();
+  left_chunks_.clear();
+  left_nodes_.clear();
   for (const std::uint32_t slot : slots) {
-    const Place place = place_in(nodes_[number], slot);
-    if (place.fits && (whole || in_root(slot))) {
-      descend(first + place.child, slot);
-    } else {
-      add_to_node(number, slot, false);
-    }
+    const std::uint32_t number = chunk_of_slot_[slot];
+    if (number == kNone) continue;
+    Chunk& chunk = chunks_[number];
+    if (chunk.leaving++ == 0) left_chunks_.push_back(number);
+    nodes_[chunk.node].fitting -= fits_[slot];
+    chunk_of_slot_[slot] = kNone;
+    chunk.stale = chunk.stale || many;
+    take_content(chunk, slot);
+    if (!many) chunk.slots.erase(std::find(chunk.slots.begin(), chunk.slots.end(), slot));
   }
-  adding_ = before;
+  for (const std::uint32_t number : left_chunks_) {
+    Chunk& chunk = chunks_[number];
+    if (many) std::erase_if(chunk.slots, [&](std::uint32_t slot) { return chunk_of_slot_[slot] != number; });
+    for (std::uint32_t n = chunk.node; n != kNone; n = nodes_[n].parent)
+      nodes_[n].content.slots -= chunk.leaving;
+    chunk.leaving = 0;
+    touch_chunk(number);
+    left_nodes_.push_back(chunk.node);
+  }
+  for (const std::uint32_t number : left_chunks_) {
+    if (chunks_[number].node != kNone) join_left(number);
+  }
+  for (const std::uint32_t number : left_nodes_) {
+    if (number == 0 || nodes_[number].parent != kNone) join_small(number);  // else it was swallowed meanwhile
+  }
 }
 
-void Octree::remove(std::uint32_t slot) {
-  if (!contains(slot)) return;
-  const std::uint32_t node = chunks_[chunk_of_slot_[slot]].node;
-  remove_from_node(slot);
-  for (std::uint32_t n = node; n != kNone; n = nodes_[n].parent) --nodes_[n].content.slots;
-  join_small(node);
-}
-
-void Octree::remove_from_node(std::uint32_t slot) {
-  const std::uint32_t number = chunk_of_slot_[slot];
-  Chunk& chunk = chunks_[number];
-  Node& node = nodes_[chunk.node];
-  chunk.slots.erase(std::find(chunk.slots.begin(), chunk.slots.end(), slot));
-  chunk_of_slot_[slot] = kNone;
-  node.fitting -= fits_[slot];
-  touch_chunk(number, Change::stale);
-  const auto at = static_cast<std::size_t>(std::find(node.chunks.begin(), node.chunks.end(), number) -
-                                           node.chunks.begin());
-  if (chunk.slots.empty()) {
+void Octree::join_left(std::uint32_t number) {
+  const std::uint32_t owner = chunks_[number].node;
+  std::vector<std::uint32_t>& list = nodes_[owner].chunks;
+  const auto at = static_cast<std::size_t>(std::find(list.begin(), list.end(), number) - list.begin());
+  if (chunks_[number].slots.empty()) {
     free_chunk(number);
-    node.chunks.erase(node.chunks.begin() + static_cast<std::ptrdiff_t>(at));
-  } else {
-    const std::uint32_t owner = chunk.node;
-    join_chunks(owner, at);
-    if (at > 0) join_chunks(owner, at - 1);
+    list.erase(list.begin() + static_cast<std::ptrdiff_t>(at));
+    return;
   }
+  join_chunks(owner, at);
+  if (at > 0) join_chunks(owner, at - 1);
 }
 
 /// The highest node on the way up whose subtree fits half a node swallows it.
@@ -234,34 +299,47 @@ void Octree::join_small(std::uint32_t number) {
     if (!nodes_[n].leaf()) top = n;
   }
   if (top == kNone) return;
-  std::vector<std::uint32_t> slots;
-  take_slots(top, slots);
+  arriving_.clear();
+  take_slots(top);
   nodes_[top].fitting = 0;
-  const Change before = std::exchange(adding_, Change::stale);
-  for (const std::uint32_t slot : slots) {
-    const bool fits = (top != 0 || in_root(slot)) && place_in(nodes_[top], slot).fits;
-    add_to_node(top, slot, fits);
-  }
-  adding_ = before;
+  Places counts{};
+  find_places(top, 0, counts);
+  for (std::size_t i = 0; i < arriving_.size(); ++i) add_to_node(top, arriving_[i], places_[i] != kStays);
+  arriving_.clear();
   touch_node(top);
 }
 
-void Octree::take_slots(std::uint32_t number, std::vector<std::uint32_t>& slots) {
+void Octree::take_chunks(std::uint32_t number) {
   for (const std::uint32_t chunk : nodes_[number].chunks) {
-    slots.insert(slots.end(), chunks_[chunk].slots.begin(), chunks_[chunk].slots.end());
+    arriving_.insert(arriving_.end(), chunks_[chunk].slots.begin(), chunks_[chunk].slots.end());
     free_chunk(chunk);
   }
   nodes_[number].chunks.clear();
+}
+
+void Octree::take_slots(std::uint32_t number) {
+  take_chunks(number);
   if (nodes_[number].leaf()) return;
   const std::uint32_t first = nodes_[number].first_child;
-  for (std::uint32_t i = 0; i < 8; ++i) take_slots(first + i, slots);
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    take_slots(first + i);
+    nodes_[first + i].parent = kNone;
+  }
   free_children_.push_back(first);
   nodes_[number].first_child = kNone;
 }
 
 void Octree::move(std::uint32_t slot) {
   if (!contains(slot)) return insert(slot);
-  const Chunk& chunk = chunks_[chunk_of_slot_[slot]];
+  if (move_within(slot)) return;
+  forget_box(slot);
+  remove(slot);
+  insert(slot);
+}
+
+bool Octree::move_within(std::uint32_t slot) {
+  const std::uint32_t number = chunk_of_slot_[slot];
+  Chunk& chunk = chunks_[number];
   const Node& node = nodes_[chunk.node];
   // Still in the same chunk: only boxes change, what was recorded of the chunk stays good.
   bool same = !boxes_.get(slot).empty();
@@ -272,16 +350,14 @@ void Octree::move(std::uint32_t slot) {
   if (same) {
     const bool fits = node.level < options_.most_levels && place_in(node, slot).fits;
     same = fits == (fits_[slot] != 0) && (!fits || node.leaf()) &&
-           node.chunks[chunk_for(node, code_in(node, slot))] == chunk_of_slot_[slot];
+           (node.chunks.size() == 1 || node.chunks[chunk_for(node, code_in(node, slot))] == number);
   }
-  if (!same) {
-    remove(slot);
-    return insert(slot);
-  }
-  Chunk& in = chunks_[chunk_of_slot_[slot]];
-  if (!in.dirty) dirty_chunks_.push_back(chunk_of_slot_[slot]);
-  in.dirty = in.stale = true;
-  touch_node(in.node);
+  if (!same) return false;
+  chunk.stale = true;
+  if (!chunk.dirty) dirty_chunks_.push_back(number);
+  chunk.dirty = true;
+  touch_node(chunk.node);
+  return true;
 }
 
 std::uint32_t Octree::new_chunk(std::uint32_t node, std::uint64_t first_code) {
@@ -304,6 +380,7 @@ void Octree::free_chunk(std::uint32_t number) {
   chunk.slots.clear();
   chunk.content = {};
   chunk.dirty = chunk.stale = false;
+  chunk.loose = 0;
   chunk.revision = ++revisions_;
   free_chunks_.push_back(number);
 }
@@ -335,12 +412,16 @@ std::uint32_t Octree::new_children(std::uint32_t number) {
   return first;
 }
 
-void Octree::touch_chunk(std::uint32_t number, Change change) {
+void Octree::forget_scratch() {
+  for (std::vector<std::uint32_t>* list : {&arriving_, &sorted_, &left_chunks_, &left_nodes_}) *list = {};
+  places_ = {};
+}
+
+void Octree::touch_chunk(std::uint32_t number) {
   Chunk& chunk = chunks_[number];
   chunk.revision = ++revisions_;
   if (!chunk.dirty) dirty_chunks_.push_back(number);
   chunk.dirty = true;
-  chunk.stale = chunk.stale || change == Change::stale;
   touch_node(chunk.node);
 }
 
@@ -358,7 +439,7 @@ bool Octree::refresh(std::size_t most_slots) {
     if (seen >= most_slots) return false;
     dirty_chunks_.pop_back();
     if (!chunk.dirty) continue;
-    seen += chunk.stale ? chunk.slots.size() : 1;
+    seen += chunk.slots.size();
     refresh_chunk(chunk);
   }
   for (std::size_t level = dirty_nodes_.size(); level-- > 0;) {
@@ -381,23 +462,62 @@ void Octree::refresh_chunk(Chunk& chunk) {
       std::rotate(std::upper_bound(chunk.slots.begin(), i, *i), i, i + 1);
   }
   if (chunk.stale) {
-    Content sum;
-    for (const std::uint32_t slot : chunk.slots) add_to_content(sum, slot);
-    chunk.content = sum;
+    chunk.content = {};
+    add_content(chunk.content, chunk.slots);
     refreshed_.slots += chunk.slots.size();
+  } else if (chunk.loose != 0) {
+    tighten(chunk);
   }
   ++refreshed_.chunks;
+  chunk.content.slots = static_cast<std::uint32_t>(chunk.slots.size());
   chunk.dirty = chunk.stale = false;
+  chunk.loose = 0;
 }
 
-void Octree::add_to_content(Content& content, std::uint32_t slot) const {
+void Octree::add_content(Content& to, std::span<const std::uint32_t> slots) const {
+  Content sum = to;
+  for (const std::uint32_t slot : slots) {
+    const Box box = boxes_.get(slot);
+    sum.box_m.add(box);
+    const Work work = work_of_slot_(slot);
+    sum.vertices += work.vertices;
+    sum.triangles += work.triangles;
+    sum.area_m2 += surface_m2(box);
+  }
+  to = sum;
+}
+
+/// Where something that touched a side has left, another slot may touch it too: in walls the first one looked
+/// at.
+void Octree::tighten(Chunk& chunk) const {
+  Box& box = chunk.content.box_m;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto farthest = [&](const std::vector<float>& values, float side, const auto& beyond) {
+      float best = values[chunk.slots.front()];
+      for (const std::uint32_t slot : chunk.slots) {
+        if (values[slot] == side) return side;
+        if (beyond(values[slot], best)) best = values[slot];
+      }
+      return best;
+    };
+    if ((chunk.loose >> axis & 1) != 0) box.lo[axis] = farthest(boxes_.lo[axis], box.lo[axis], std::less<>());
+    if ((chunk.loose >> axis & 8) != 0)
+      box.hi[axis] = farthest(boxes_.hi[axis], box.hi[axis], std::greater<>());
+  }
+}
+
+void Octree::take_content(Chunk& chunk, std::uint32_t slot) {
+  if (chunk.stale) return;
   const Box box = boxes_.get(slot);
+  Content& sum = chunk.content;
   const Work work = work_of_slot_(slot);
-  content.box_m.add(box);
-  ++content.slots;
-  content.vertices += work.vertices;
-  content.triangles += work.triangles;
-  content.area_m2 += surface_m2(box);
+  sum.vertices -= work.vertices;
+  sum.triangles -= work.triangles;
+  sum.area_m2 = std::max(0.0, sum.area_m2 - surface_m2(box));
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.lo[axis] <= sum.box_m.lo[axis]) chunk.loose |= static_cast<std::uint8_t>(1U << axis);
+    if (box.hi[axis] >= sum.box_m.hi[axis]) chunk.loose |= static_cast<std::uint8_t>(8U << axis);
+  }
 }
 
 void Octree::refresh_node(Node& node) {
@@ -474,8 +594,9 @@ void Octree::cull(const CullPlanes& planes, const glm::vec3& eye_m, std::vector<
 }
 
 std::uint64_t Octree::bytes() const {
-  std::uint64_t sum = held_bytes(nodes_, chunks_, free_children_, free_chunks_, chunk_of_slot_, fits_) +
-                      held_bytes(dirty_chunks_, dirty_nodes_, coded_);
+  std::uint64_t sum =
+      held_bytes(nodes_, chunks_, free_children_, free_chunks_, chunk_of_slot_, fits_) +
+      held_bytes(dirty_chunks_, dirty_nodes_, coded_, arriving_, sorted_, places_, left_chunks_, left_nodes_);
   for (const Node& node : nodes_) sum += held_bytes(node.chunks);
   for (const Chunk& chunk : chunks_) sum += held_bytes(chunk.slots);
   return sum;

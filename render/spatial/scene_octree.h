@@ -29,11 +29,12 @@ class SceneOctree {
   [[nodiscard]] const Octree& tree() const { return tree_; }
   /// Host memory held.
   [[nodiscard]] std::uint64_t memory_bytes() const {
-    return tree_.bytes() + mirrored_.memory_bytes() + pending_.memory_bytes();
+    return tree_.bytes() + mirrored_.memory_bytes() + pending_.memory_bytes() + held_bytes(gone_, come_);
   }
 
  private:
-  void follow(std::uint32_t slot);
+  /// The next `count` slots of those put off.
+  void follow(std::size_t count);
 
   const DrawScene& scene_;
   Octree tree_;
@@ -42,6 +43,7 @@ class SceneOctree {
   std::size_t pending_slots_ = 0;
   std::size_t cursor_ = 0;  // word of pending_ to look at next
   bool refreshed_ = true;
+  std::vector<std::uint32_t> gone_, come_;  // scratch
 };
 
 }  // namespace scenegen::render

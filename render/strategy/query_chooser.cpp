@@ -380,7 +380,13 @@ void QueryChooser::choose(const Frame& frame, QueryPlan& plan) {
   }
   if (phase_ != Phase::resting) {
     summarize(frame);
-    for (std::vector<Candidate>* list : {&hidden_, &unknown_, &joined_, &again_}) list->clear();
+    for (std::vector<Candidate>* list : {&hidden_, &unknown_, &joined_, &again_}) {
+      make_room(*list, frame.chunks.size());
+      list->clear();
+    }
+    make_room(curve_, frame.chunks.size() + 1);
+    make_room(window_, kWindow);
+    make_room(points_, kWindow);
     collect(frame, 0);
     phase_ == Phase::gathering ? gather(frame, plan) : ask_best(frame, plan);
   }

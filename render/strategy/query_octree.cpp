@@ -34,7 +34,7 @@ void QueryOctree::draw_chunks(PassRecording& pass) {
   QueryPlan& plan = plans_[kind];
   {
     const StageTimer timer(counters_.ask_ms);
-    plan.clear();
+    plan.clear(chunks_.size());
     choose(kind, QueryBoxes(view(), {pass.target().extent.width, pass.target().extent.height}), plan);
     occlusion.reserve(context, plan.asked.size(), tree().chunk_numbers());
   }

@@ -8,12 +8,23 @@
 
 namespace scenegen::render {
 
+/// Room for `count`, and half as much again if it has to grow: what is asked differs from frame to frame, and
+/// a list that grew as it filled up would still grow long after.
+template <class T>
+void make_room(std::vector<T>& list, std::size_t count) {
+  if (list.capacity() < count) list.reserve(count + count / 2);
+}
+
 struct QueryPlan {
   std::vector<std::uint32_t> first;   ///< chunks to draw whatever the answers are
   std::vector<std::uint32_t> second;  ///< chunks believed hidden, each governed by one of `asked`
   std::vector<Asked> asked;
   std::vector<Governed> governed;  ///< as `second`, with the query
-  void clear() {
+  /// Empties it, with room for a frame with so many chunks.
+  void clear(std::size_t chunks) {
+    for (std::vector<std::uint32_t>* list : {&first, &second}) make_room(*list, chunks);
+    make_room(asked, chunks);
+    make_room(governed, chunks);
     first.clear();
     second.clear();
     asked.clear();

@@ -91,14 +91,14 @@ Barriers& Barriers::image_levels(vk::Image image, std::uint32_t first_level, std
   return *this;
 }
 
-std::vector<vk::MemoryBarrier2> Barriers::memory() const {
-  if (!everywhere_) return {};
-  return {vk::MemoryBarrier2(Stage::eAllCommands, Access::eMemoryRead | Access::eMemoryWrite,
-                             Stage::eAllCommands, Access::eMemoryRead | Access::eMemoryWrite)};
+std::span<const vk::MemoryBarrier2> Barriers::memory() const {
+  static const vk::MemoryBarrier2 all(Stage::eAllCommands, Access::eMemoryRead | Access::eMemoryWrite,
+                                      Stage::eAllCommands, Access::eMemoryRead | Access::eMemoryWrite);
+  return {&all, everywhere_ ? std::size_t{1} : 0};
 }
 
 void Barriers::flush(const vk::raii::CommandBuffer& commands) {
-  const std::vector<vk::MemoryBarrier2> all = memory();
+  const std::span<const vk::MemoryBarrier2> all = memory();
   if (all.empty() && buffers_.empty() && images_.empty()) return;
   commands.pipelineBarrier2(vk::DependencyInfo({}, all, buffers_, images_));
   buffers_.clear();

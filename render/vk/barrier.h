@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
 
@@ -17,7 +18,8 @@ struct UseScope {
 };
 [[nodiscard]] UseScope scope_of(Use use);
 
-/// Collects the barriers between two steps of a frame and emits them in one command.
+/// Collects the barriers between two steps of a frame and emits them in one command. Kept from frame to
+/// frame, it allocates nothing more.
 class Barriers {
  public:
   /// `everywhere`: every flush becomes a full barrier on all stages and all memory (`--barriers full`), which
@@ -36,7 +38,7 @@ class Barriers {
   // What flush would emit.
   [[nodiscard]] const std::vector<vk::BufferMemoryBarrier2>& buffers() const { return buffers_; }
   [[nodiscard]] const std::vector<vk::ImageMemoryBarrier2>& images() const { return images_; }
-  [[nodiscard]] std::vector<vk::MemoryBarrier2> memory() const;
+  [[nodiscard]] std::span<const vk::MemoryBarrier2> memory() const;
 
  private:
   void add_image(vk::Image image, const vk::ImageSubresourceRange& range, Use before, Use after);

@@ -55,7 +55,7 @@ class World {
       for (const std::uint32_t samples : asked_.front().second) hidden_answers += samples == 0 ? 1 : 0;
       asked_.pop_front();
     }
-    plan.clear();
+    plan.clear(chunks.size());
     const QueryBoxes boxes(view_, kSize);
     const ScreenArea screen(view_, kSize);
     chooser.choose({*tree, visits_, chunks, boxes, screen, costs_, 0.0}, plan);

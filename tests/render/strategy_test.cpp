@@ -146,7 +146,7 @@ void check_ways(const Path& path, const Reference& wanted, bool both_forms, bool
 void check_adaptive(const Path& path, const Reference& wanted, bool aloud) {
   const bool even = path.name.size() % 2 == 0;
   RendererOptions options = Way{"adaptive", even ? NodeForm::indirect : NodeForm::secondaries}.options();
-  options.how.change_every = even ? 12 : 9;  // long enough to believe, and to be wrong
+  options.how.change_every = even ? 10 : 9;  // long enough to believe, and to be wrong
   options.frames_in_flight = even ? 3 : 2;
   const Run run = run_path(path, options);
   const Difference d = check_same(run, wanted);
