@@ -15,9 +15,10 @@ Result<gltf::ReadResult> read_gltf(const std::string& path, const gltf::ReadOpti
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   const std::vector<std::string> known = import::model_extensions();
   if (extension.empty() || !std::binary_search(known.begin(), known.end(), extension.substr(1))) return read;
-  return fail(ErrorKind::bad_input, path,
-              "is no glTF, and only that is read here; scenegen animate and scenegen schedule make a .glb of '" +
-                  extension + "'");
+  return fail(
+      ErrorKind::bad_input, path,
+      "is no glTF, and only that is read here; scenegen animate and scenegen schedule make a .glb of '" +
+          extension + "'");
 }
 
 }  // namespace scenegen::tools
