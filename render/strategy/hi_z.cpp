@@ -123,7 +123,7 @@ class HiZStrategy final : public DeviceCulled {
   }
   [[nodiscard]] model::FrameFacts facts() const override {
     model::FrameFacts facts = ListStrategy::facts();
-    DrawList in_frustum;  // the device does not tell
+    DrawList& in_frustum = in_frustum_;  // the device does not tell
     list_in_frustum(scene_, cull_planes(frustum_of(view_.clip_from_world), scene_.bounds_m()), in_frustum);
     facts.in_frustum = load_of_slots(scene_, in_frustum.solid, ScreenArea(view_, size_));
     facts.exact_inline = true;
@@ -184,6 +184,7 @@ class HiZStrategy final : public DeviceCulled {
   double blocks_;
   DeviceCounts last_;
   bool inline_ = false;
+  mutable DrawList in_frustum_;  // scratch of facts()
   std::uint64_t revision_ = 1;  // of the sets of visible and mirrored slots
   bool turned_over_ = false;    // a slot became mirrored that no command draws
   std::unique_ptr<HiZLayout> layout_, old_layout_;

@@ -176,7 +176,7 @@ TEST_CASE("frames: what adaptive took, why, and what every way should take") {
     CHECK_THAT(frame["reason"].get<std::string>(),
                Catch::Matchers::StartsWith("inline: ") && Catch::Matchers::Contains(" ms against "));
     CHECK(frame["sidesMs"].size() == 2);
-    REQUIRE(frame["predicted"].size() == 7);
+    REQUIRE(frame["predicted"].size() == 8);
     CHECK(frame["predicted"][1]["name"] == "inline");
     for (const auto& way : frame["predicted"]) CHECK(way["totalMs"].get<double>() > 0);
     CHECK(frame["stagesMs"]["choose"].get<double>() >= 0);
@@ -186,7 +186,7 @@ TEST_CASE("frames: what adaptive took, why, and what every way should take") {
   const auto frame = nlohmann::json::parse(read_file(folder.file("r.json")))["frames"][2];
   CHECK(frame["strategyUsed"] == "octree");
   CHECK(!frame.contains("reason"));
-  CHECK(frame["predicted"].size() == 7);
+  CHECK(frame["predicted"].size() == 8);
 }
 
 TEST_CASE("frames: film, forms, camera path, clean under validation") {
