@@ -62,7 +62,7 @@ class Octree {
     std::uint32_t slots = 0;
     std::uint64_t vertices = 0;  ///< drawn
     std::uint64_t triangles = 0;
-    double area_m2 = 0;          ///< sum of the boxes' surfaces, not clamped (METHODS 4)
+    double area_m2 = 0;  ///< sum of the boxes' surfaces, not clamped (METHODS 4)
   };
 
   struct Chunk {
@@ -95,8 +95,7 @@ class Octree {
 
   /// `boxes` must outlive the tree and be up to date whenever a slot is inserted or moved and at refresh(). A
   /// slot whose box has changed since must be moved, or forgotten with forget_box(), before it is removed.
-  Octree(const SlotBoxes& boxes, std::function<Work(std::uint32_t)> work_of_slot,
-         const Options& options);
+  Octree(const SlotBoxes& boxes, std::function<Work(std::uint32_t)> work_of_slot, const Options& options);
 
   /// Slots that are not in the tree, each once. One with an empty box is left out.
   void insert(std::span<const std::uint32_t> slots);

@@ -185,8 +185,8 @@ class HiZStrategy final : public DeviceCulled {
   DeviceCounts last_;
   bool inline_ = false;
   mutable DrawList in_frustum_;  // scratch of facts()
-  std::uint64_t revision_ = 1;  // of the sets of visible and mirrored slots
-  bool turned_over_ = false;    // a slot became mirrored that no command draws
+  std::uint64_t revision_ = 1;   // of the sets of visible and mirrored slots
+  bool turned_over_ = false;     // a slot became mirrored that no command draws
   std::unique_ptr<HiZLayout> layout_, old_layout_;
   std::unique_ptr<HiZOrder> order_;
   std::array<std::unique_ptr<HiZ>, 2> culling_, old_;
