@@ -39,7 +39,7 @@ class Runs {
 
   /// From now on.
   void use(NodeForm form) { form_ = form; }
-  void only_boxes() { scene_ = &only_boxes_; }
+  void only_boxes(bool only) { scene_ = only ? &only_boxes_ : &test_; }
 
   template <class Wanted>
   Result<Run> run(const char* strategy, std::uint32_t per_node, bool shadows, double share,
@@ -176,7 +176,7 @@ Result<Calibration> calibrate(const CalibrationOptions& options) {
   const double first = (options.quick ? 0.56 : 0.42) - flat_share;
   Result<Run> with = runs.run("inline", 0, options.shadows, first, drawn);
   if (!with) return forward_error(with);
-  runs.only_boxes();
+  runs.only_boxes(true);
   // Differences to the other strategies are taken without shadows.
   Result<Run> flat = options.shadows ? runs.run("inline", 0, false, flat_share, boxes) : Result<Run>(*with);
   if (!flat) return forward_error(flat);
@@ -185,7 +185,9 @@ Result<Calibration> calibrate(const CalibrationOptions& options) {
   fit.inline_run(*with);
   // Recording is what it is without the shadows' pass, which has a cost of its own.
   if (options.shadows) out.costs.record_s = std::max(0.0, out.costs.record_s - out.costs.shadow_slot_s);
+  runs.only_boxes(false);  // as many blocks as there are
   if (Result<void> done = measure_hi_z(runs, *flat, fit); !done) return forward_error(done);
+  runs.only_boxes(true);
   if (Result<void> done = measure_octrees(runs, *flat, *with, options.quick, fit); !done)
     return forward_error(done);
   fit.finish();
