@@ -121,6 +121,22 @@ bool Choice::worth_a_trial(const Offer& now, const Offer& other, const Correctio
   return cost <= trial_purse_s_;
 }
 
+std::size_t Choice::to_try(std::span<const Offer> offers, std::size_t present, std::size_t best,
+                           bool preparing, const Correction& correction) const {
+  // Not the best alone: a way that is guessed too dear would never be measured beside one that is guessed too
+  // cheap.
+  std::size_t found = offers.size();
+  for (std::size_t i = 0; i < offers.size(); ++i) {
+    if (i == present || !offers[i].possible || correction.knows(offers[i].method)) continue;
+    if (preparing && !offers[i].ready) continue;
+    if (!worth_a_trial(offers[present], offers[i], correction)) continue;
+    if (found == offers.size() || offers[i].frame_s < offers[found].frame_s) found = i;
+  }
+  if (found == offers.size() && !preparing && worth_a_trial(offers[present], offers[best], correction))
+    found = best;
+  return found;
+}
+
 std::optional<Reason> Choice::objection(const Offer& now, const Offer& other, std::size_t number,
                                         double elapsed) {
   const double saved_s = now.frame_s - other.frame_s;
@@ -153,22 +169,28 @@ Choice::Decision Choice::decide(std::span<const Offer> offers, std::size_t prese
     if (best == offers.size() || offers[i].frame_s < offers[best].frame_s) best = i;
   }
   if (best == offers.size()) return d;
-  const Offer& other = offers[best];
-  d.verdict.rival = other.method;
-  d.verdict.rival_s = other.frame_s;
+  d.verdict.rival = offers[best].method;
+  d.verdict.rival_s = offers[best].frame_s;
   if (!now.possible) {
     d.take = best;
   } else if (trial_left_ > 0.0) {
     d.verdict.reason = Reason::trial;
     return d;
   } else {
-    const std::optional<Reason> against = objection(now, other, best, elapsed);
-    d.trial = against && against != Reason::patience && correction != nullptr &&
-              worth_a_trial(now, other, *correction);
+    const std::optional<Reason> against = objection(now, offers[best], best, elapsed);
     d.verdict.reason = against.value_or(Reason::cheaper);
-    if (!against || d.trial) d.take = best;
+    if (!against) d.take = best;
+    const bool preparing = !against && !offers[best].ready;
+    if (correction != nullptr && (preparing || (against && *against != Reason::patience))) {
+      const std::size_t tried = to_try(offers, present, best, preparing, *correction);
+      d.trial = tried < offers.size();
+      if (d.trial) d.take = tried;
+    }
   }
   if (d.take == present) return d;
+  const Offer& other = offers[d.take];
+  d.verdict.rival = other.method;
+  d.verdict.rival_s = other.frame_s;
   if (!other.ready) {
     d.verdict.reason = Reason::preparing;
   } else {

@@ -112,6 +112,11 @@ class Choice {
 
  private:
   [[nodiscard]] bool worth_a_trial(const Offer& now, const Offer& other, const Correction& correction) const;
+  /// The offer to try: of those that were never measured the one predicted to take least, else the best of
+  /// all others; offers.size(): none is worth it. While the best is being prepared, only others that are
+  /// ready.
+  [[nodiscard]] std::size_t to_try(std::span<const Offer> offers, std::size_t present, std::size_t best,
+                                   bool preparing, const Correction& correction) const;
   /// What speaks against a change; nothing: it is to be made.
   [[nodiscard]] std::optional<Reason> objection(const Offer& now, const Offer& other, std::size_t number,
                                                 double elapsed);

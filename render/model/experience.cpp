@@ -53,8 +53,8 @@ void Experience::learn(const FrameFacts& f) {
   }
   if (f.exact_seen && f.in_frustum.draws > 0.0) {
     culled_ = true;
-    draws_seen_ = share(f.seen.draws, f.in_frustum.draws);
-    vertices_seen_ = share(f.seen.vertices, f.in_frustum.vertices);
+    draws_seen_ = share(f.seen.draws, f.in_frustum.draws) / seen_share(f);
+    vertices_seen_ = share(f.seen.vertices, f.in_frustum.vertices) / seen_share(f);
   }
   if (f.exact_queries && f.chunks > 0.0) {
     queried_ = true;
@@ -67,19 +67,21 @@ void Experience::learn(const FrameFacts& f) {
   }
 }
 
+/// Of what is in the frustum: of k layers over the picture, one and a half are seen.
+double Experience::seen_share(const FrameFacts& f) {
+  const double covered = shaded_fragments(f.in_frustum, f.screen_pixels).covered_share * f.screen_pixels;
+  const double layers = covered > 0.0 ? f.in_frustum.fragments / covered : 1.0;
+  return std::clamp(1.5 / std::max(1.0, layers), 0.02, 1.0);
+}
+
 void Experience::fill_seen(FrameFacts& f) const {
-  const Shaded all = shaded_fragments(f.in_frustum, f.screen_pixels);
-  const double covered = all.covered_share * f.screen_pixels;
+  const double covered = shaded_fragments(f.in_frustum, f.screen_pixels).covered_share * f.screen_pixels;
   if (!f.exact_seen) {
-    double draws = draws_seen_, vertices = vertices_seen_;
-    if (!culled_) {
-      // Never culled so: of k layers over the picture, one and a half are seen; no more than queries left,
-      // which ask about larger things.
-      const double layers = covered > 0.0 ? f.in_frustum.fragments / covered : 1.0;
-      draws = std::clamp(1.5 / std::max(1.0, layers), 0.1, 1.0);
-      if (queried_) draws = std::min(draws, 1.0 - draws_hidden_);
-      vertices = draws;
-    }
+    // By how far that was wrong when it was last known: what was seen looking away says little of a street.
+    double draws = std::min(1.0, draws_seen_ * seen_share(f));
+    double vertices = std::min(1.0, vertices_seen_ * seen_share(f));
+    // Never known: no more than queries left, which ask about larger things.
+    if (!culled_ && queried_) draws = vertices = std::min(draws, 1.0 - draws_hidden_);
     f.seen = scaled(f.in_frustum, vertices);
     f.seen.draws = draws * f.in_frustum.draws;
   }

@@ -46,6 +46,7 @@ class Experience {
   void fill_octree(FrameFacts& facts, std::uint32_t per_node, const TouchedChunks& touched) const;
   void fill_queries(FrameFacts& facts) const;
   void fill_seen(FrameFacts& facts) const;
+  [[nodiscard]] static double seen_share(const FrameFacts& facts);
 
   // Until something was seen: half-full to full chunks; some of a chunk in the frustum lies outside it.
   double fill_ = 0.7;                                  // draws in a chunk / objects a node
@@ -57,7 +58,7 @@ class Experience {
   double chunks_hidden_ = 0, draws_hidden_ = 0;  // of them
   double vertices_hidden_ = 0, fragments_hidden_ = 0;
   bool culled_ = false;
-  double draws_seen_ = 1, vertices_seen_ = 1;  // of those in the frustum, by culling on the device
+  double draws_seen_ = 1, vertices_seen_ = 1;  // by culling on the device / seen_share()
 };
 
 }  // namespace scenegen::render::model

@@ -213,6 +213,36 @@ TEST_CASE("a way that is being prepared is asked for, not taken; one that is not
   CHECK(d.take == 0);
 }
 
+TEST_CASE(
+    "a way that was never measured is tried though another is guessed to be better, or while that is "
+    "prepared") {
+  Correction correction;
+  for (int i = 0; i < 50; ++i) correction.measured(Method::inline_frustum, 100, {1e-3, 5e-3}, {1e-3, 5e-3});
+  std::array<Offer, 3> offers{Offer{Method::inline_frustum, 5e-3, 0, true, true},
+                              Offer{Method::octree, 4.9e-3, 0.2, true, false},
+                              Offer{Method::hi_z, 5.5e-3, 0, true, true}};
+  Choice choice;
+  Choice::Decision d = choice.decide(offers, 0, 1, &correction);
+  CHECK(d.take == 2);  // the octree is too near, and too dear to try
+  CHECK(d.trial);
+  CHECK(d.verdict.used == Method::hi_z);
+  CHECK(d.verdict.rival == Method::inline_frustum);
+  // While the octree is prepared, which is to be taken.
+  Choice other;
+  offers[1].frame_s = 1e-3;
+  offers[1].change_s = 0;
+  for (int i = 0; i < 2; ++i) CHECK(!other.decide(offers, 0, 1, &correction).trial);  // patience
+  d = other.decide(offers, 0, 1, &correction);
+  CHECK(d.take == 2);
+  CHECK(d.trial);
+  // Not one that is known.
+  correction.measured(Method::hi_z, 5, {1e-3, 5e-3}, {1e-3, 6e-3});
+  Choice third;
+  for (int i = 0; i < 4; ++i) d = third.decide(offers, 0, 1, &correction);
+  CHECK(d.take == 1);
+  CHECK(d.verdict.reason == Reason::preparing);
+}
+
 TEST_CASE("a slow mean follows what lasts, and a seek does not throw it") {
   SlowMean mean(10);
   for (int i = 0; i < 100; ++i) mean.add(20);

