@@ -29,6 +29,9 @@ endif()
 if(CMAKE_UNITY_BUILD)  # in builds that only CI makes, and others seldom: a fifth of the compile time
   # What is local to one file hides what is local to another; the release build, of single files, has the warning.
   target_compile_options(scenegen_settings INTERFACE -Wno-shadow)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # says so of types of an anonymous namespace in whatever is included
+    target_compile_options(scenegen_settings INTERFACE -Wno-subobject-linkage)
+  endif()
 endif()
 if(SCENEGEN_SANITIZE)
   add_compile_options(-fsanitize=${SCENEGEN_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
