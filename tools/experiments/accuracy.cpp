@@ -82,6 +82,7 @@ render::RendererOptions accuracy_options(render::RendererOptions options, Method
   options.strategy = std::string(name_of(method));
   options.how.node_form = render::NodeForm::secondaries;
   options.predictions = true;
+  options.outputs.readback = true;  // calibration's T_0 has copying the picture out in it
   return options;
 }
 
