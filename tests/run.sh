@@ -1,6 +1,6 @@
 #!/bin/bash
 # The second command of the README: install what is missing, build everything, run every check.
-#   tests/run.sh          all that one change can break (28 minutes on 2 cores)
+#   tests/run.sh          all that one change can break (25 to 30 minutes on 2 cores)
 #   tests/run.sh quick    only the release build and its tests
 #   tests/run.sh full     also lint of every file, tests labelled `long` (all viewers, Blender if there), 10 minutes of fuzzing
 # Stages print their time; the first failure stops the run.
