@@ -72,7 +72,7 @@ void add_drawing_options(Options& options, DrawingOptions& d, Value strategy, Va
   options.add("--octree-memory", whole_value(d.octree_mib, std::uint64_t{1}, std::uint64_t{1} << 20, "MIB"),
               "what --strategy octree may take; without room for it, inline is used");
   options.flag("--late-visibility", d.late_visibility,
-               "queries: believe results of earlier frames; what comes into view may appear frames too late");
+               "queries and hi-z: believe earlier frames; what comes into view may appear frames too late");
   options.flag("--no-correction", d.no_correction,
                "adaptive: choose by the model alone, not corrected by what earlier frames took");
   options.add("--frames-in-flight", std::move(frames_in_flight),

@@ -126,8 +126,8 @@ void Experience::fill_queries(FrameFacts& f) const {
                 vertices_hidden_ * f.in_chunks.triangles};
     return;
   }
-  // Never asked: of k layers over the picture, all but the first two or so could be hidden; of chunks, which
-  // are hidden as a whole or not at all, half of that (test set 32 and towns: 0.3 to 0.6 of it).
+  // Never asked: of k layers over the picture, all but the first two or so could be hidden. Chunks are hidden
+  // as a whole or not at all; half of that is a guess, until they are asked.
   const Shaded shaded = shaded_fragments(f.in_chunks, f.screen_pixels);
   const double covered = shaded.covered_share * f.screen_pixels;
   const double layers = covered > 0.0 ? f.in_chunks.fragments / covered : 1.0;

@@ -30,9 +30,10 @@ std::span<const StrategyEntry> strategies() {
       StrategyEntry{"queries-all", "the same, with an occlusion query for every node", &make_queries_all},
       StrategyEntry{"queries", "the same, with as many occlusion queries as pay", &make_queries},
       StrategyEntry{"hi-z", "frustum and occlusion culling of every object on the device", &make_hi_z},
-      StrategyEntry{"adaptive",
-                    "the cheapest of inline, octree and queries by a model of what they cost, each frame",
-                    &make_adaptive},
+      StrategyEntry{
+          "adaptive",
+          "the cheapest of inline, octree, queries and hi-z by a model of what they cost, each frame",
+          &make_adaptive},
   };
   return kEntries;
 }
