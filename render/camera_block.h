@@ -7,6 +7,6 @@
 namespace scenegen::render {
 
 /// `scene_m`: what shadows must reach.
-[[nodiscard]] CameraBlock camera_block(const View& view, const Box& scene_m, bool shadows);
+[[nodiscard]] CameraBlock camera_block(const View& view, const Box& scene_m);
 
 }  // namespace scenegen::render

@@ -46,9 +46,10 @@ void DrawScene::build_primitives(const Scene& scene, std::span<const std::uint32
       const Material fallback;
       const Material& material = p.material.valid() ? scene.materials[p.material.value] : fallback;
       const std::uint32_t material_index = p.material.valid() ? p.material.value : default_material_;
+      const Geometry& geometry = scene.geometries[p.geometry.value];
       DrawState state;
       state.alpha = material.alpha_mode;
-      switch (scene.geometries[p.geometry.value].topology) {
+      switch (geometry.topology) {
         case Topology::points:
           state.kind = PrimitiveKind::points;
           break;
@@ -62,9 +63,11 @@ void DrawScene::build_primitives(const Scene& scene, std::span<const std::uint32
       }
       state.double_sided = material.double_sided;
       state.texture_set = texture_set_of_material[material_index];
+      // glTF: tangents without normals are to be ignored.
+      state.tangents =
+          material.normal_texture.texture.valid() && !geometry.normals.empty() && !geometry.tangents.empty();
       states.push_back(state);
-      const auto vertices =
-          static_cast<std::uint32_t>(scene.geometries[p.geometry.value].drawn_vertex_count());
+      const auto vertices = static_cast<std::uint32_t>(geometry.drawn_vertex_count());
       primitives_.push_back({p.geometry, MaterialId(material_index), MeshId(m), 0,
                              DrawWork{vertices, vertices / 3, 1.0F}, bounds[p.geometry.value]});
     }

@@ -25,6 +25,7 @@ struct DrawState {
   PrimitiveKind kind = PrimitiveKind::triangles;
   bool double_sided = false;
   std::uint32_t texture_set = 0;  ///< 0: no textures
+  bool tangents = false;          ///< the geometry has them
   friend auto operator<=>(const DrawState&, const DrawState&) = default;
 };
 

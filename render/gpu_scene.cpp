@@ -59,7 +59,7 @@ MaterialRecord material_record(const Material& m) {
   MaterialRecord r{};
   r.base_color = m.base_color;
   r.emissive = glm::vec4(m.emissive, m.alpha_cutoff);
-  r.factors = glm::vec4(m.metallic, m.roughness, 0.0F, 0.0F);
+  r.factors = glm::vec4(m.metallic, m.roughness, m.normal_texture.strength, m.occlusion_texture.strength);
   if (m.unlit) r.flags.x |= kMaterialUnlit;
   const auto uses = uses_of(m);
   for (std::uint32_t i = 0; i < kTextureCount; ++i) {
@@ -70,7 +70,7 @@ MaterialRecord material_record(const Material& m) {
     const float c = std::cos(use.uv_rotation_rad);
     const float s = std::sin(use.uv_rotation_rad);
     r.textures[i].row0 = {c * use.uv_scale.x, s * use.uv_scale.y, use.uv_offset.x, 0.0F};
-    r.textures[i].row1 = {-s * use.uv_scale.x, c * use.uv_scale.y, use.uv_offset.y, use.strength};
+    r.textures[i].row1 = {-s * use.uv_scale.x, c * use.uv_scale.y, use.uv_offset.y, 0.0F};
   }
   return r;
 }

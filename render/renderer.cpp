@@ -118,7 +118,7 @@ void Renderer::State::build(const Scene& source, const timeline::Player& player)
   const TextureSets sets = texture_sets(source);
   barriers = vkr::Barriers(options.full_barriers);
   memory.emplace(*device, options.memory_faults);
-  pipelines.emplace(*device, samples);
+  pipelines.emplace(*device, samples, options.shadows);
   // Before the scene, which may lie in memory of the host where targets may not.
   make_targets();
   // Without shadows the map is one texel: every descriptor must name something.
@@ -248,7 +248,7 @@ void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline:
 
   start = Clock::now();
   vkr::Frame& frame = ring->begin();
-  const CameraBlock camera = camera_block(view, scene->bounds_m(), options.shadows);
+  const CameraBlock camera = camera_block(view, scene->bounds_m());
   {
     const StageTimer timer(report.upload_ms);
     report.uploaded_bytes = gpu->record_updates(frame, barriers, camera, *scene);

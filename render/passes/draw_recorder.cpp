@@ -19,6 +19,7 @@ void DrawRecorder::bind_batch(std::uint32_t batch, bool listed) {
   const DrawState& state = scene_.batches()[batch].state;
   // Depth passes read one texture at most, for the alpha of masked materials.
   std::uint32_t mask = gpu_.texture_mask(state.texture_set);
+  if (state.tangents) mask |= kTangents;
   if (pass_ != vkr::PassKind::color) mask &= state.alpha == AlphaMode::mask ? 1U << kTextureBaseColor : 0U;
   const vk::Pipeline pipeline = pipelines_.get({pass_, state.alpha, state.kind, mask, listed});
   if (pipeline != pipeline_) {

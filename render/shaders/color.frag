@@ -9,14 +9,23 @@ layout(location = 0) in vec3 in_world;
 layout(location = 1) in vec3 in_normal;
 layout(location = 2) in vec4 in_tangent;
 layout(location = 3) in vec4 in_color;
-layout(location = 4) flat in uint in_material;
-layout(location = 5) in vec4 in_uv01;
-layout(location = 6) in vec4 in_uv23;
-layout(location = 7) in vec2 in_uv4;
+layout(location = 4) in vec4 in_uv01;
+layout(location = 5) in vec4 in_uv23;
+layout(location = 6) in vec2 in_uv4;
+layout(location = 7) in vec3 in_to_eye;
+layout(location = 8) flat in vec4 in_factors;   // metallic, roughness, strength of the normal and occlusion maps
+layout(location = 9) flat in vec4 in_emissive;  // w: alpha cutoff
+layout(location = 10) flat in uint in_flags;
 
 layout(location = 0) out vec4 out_color;
 
+layout(constant_id = 3) const bool kShadows = true;
+
 const float kPi = 3.14159265358979;
+
+// Irradiance over pi of a surface that looks up and of one that looks down.
+const vec3 kLightAbove = kSkyShare * mix(kSkyHorizon, kSkyZenith, 0.4);
+const vec3 kLightBelow = kSkyShare * kGround;
 
 struct Surface {
   vec3 normal;
@@ -29,19 +38,19 @@ struct Surface {
 
 // Normal from the map; without tangents in the file, from derivatives (Schüler 2013, "Followup: Normal mapping
 // without precomputed tangents").
-vec3 mapped_normal(MaterialRecord material, vec3 n) {
+vec3 mapped_normal(vec3 n) {
   vec2 uv = in_uv23.xy;
   vec3 texel = texture(textures[kTextureNormal], uv).xyz * 2.0 - 1.0;
+  texel.xy *= in_factors.z;
+  if ((kTextureMask & kTangents) != 0) {
+    vec3 t = normalize(in_tangent.xyz - n * dot(in_tangent.xyz, n));
+    vec3 b = cross(n, t) * in_tangent.w;
+    return dot(in_tangent.xyz, in_tangent.xyz) > 0.0 ? normalize(mat3(t, b, n) * texel) : n;
+  }
   vec3 dpx = dFdx(in_world);
   vec3 dpy = dFdy(in_world);
   vec2 dux = dFdx(uv);
   vec2 duy = dFdy(uv);
-  texel.xy *= material.textures[kTextureNormal].row1.w;
-  if (dot(in_tangent.xyz, in_tangent.xyz) > 0.0) {
-    vec3 t = normalize(in_tangent.xyz - n * dot(in_tangent.xyz, n));
-    vec3 b = cross(n, t) * sign(in_tangent.w);
-    return normalize(mat3(t, b, n) * texel);
-  }
   // Screen coordinates run down, and the surface may be seen from behind: either turns the frame over.
   float turned = dot(cross(dpx, dpy), n) < 0.0 ? -1.0 : 1.0;
   vec3 px = cross(dpy, n) * turned;
@@ -55,14 +64,14 @@ vec3 mapped_normal(MaterialRecord material, vec3 n) {
 
 // Share of the sun that arrives: four bilinear comparisons, a texel and a half apart.
 float sunlight(vec3 normal) {
-  if (camera.to_sun.w == 0.0) return 1.0;
+  if (!kShadows) return 1.0;
   // Away from the surface by about a texel, more at grazing light: no surface shadows itself.
-  float slope = 1.0 - clamp(dot(normal, camera.to_sun.xyz), 0.0, 1.0);
-  vec3 p = in_world + normal * (camera.sky_zenith.w * (1.2 + 2.0 * slope));
+  float slope = 1.0 - clamp(dot(normal, kToSun), 0.0, 1.0);
+  vec3 p = in_world + normal * (camera.shadow_texel.x * (1.2 + 2.0 * slope));
   vec4 q = camera.shadow_from_world * vec4(p, 1.0);
   vec2 uv = q.xy * 0.5 + 0.5;
   if (any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return 1.0;
-  float texel = camera.sky_horizon.w;
+  float texel = camera.shadow_texel.y;
   float sum = 0.0;
   for (int i = 0; i < 4; ++i) {
     vec2 offset = vec2((i & 1) != 0 ? 0.75 : -0.75, (i & 2) != 0 ? 0.75 : -0.75);
@@ -74,30 +83,32 @@ float sunlight(vec3 normal) {
 
 // glTF 2.0 appendix B: Lambert and GGX with Smith's correlated visibility and Schlick's Fresnel.
 void sun_light(Surface s, vec3 view, out vec3 diffuse, out vec3 specular) {
-  vec3 l = camera.to_sun.xyz;
-  float nl = dot(s.normal, l);
+  float nl = dot(s.normal, kToSun);
   diffuse = specular = vec3(0.0);
-  if (nl <= 0.0 || dot(s.flat_normal, l) <= 0.0) return;
-  vec3 h = normalize(l + view);
-  float nv = max(dot(s.normal, view), 1e-4);
-  float nh = clamp(dot(s.normal, h), 0.0, 1.0);
-  float vh = clamp(dot(view, h), 0.0, 1.0);
-  float a2 = pow(s.roughness, 4.0);
+  if (nl <= 0.0 || dot(s.flat_normal, kToSun) <= 0.0) return;
+  // Of the half vector (kToSun + view) / |kToSun + view| only two cosines are needed.
+  float lv = dot(kToSun, view);
+  float n_view = dot(s.normal, view);
+  float per_half = inversesqrt(max(2.0 + 2.0 * lv, 1e-6));
+  float nh = clamp((nl + n_view) * per_half, 0.0, 1.0);
+  float vh = min((1.0 + lv) * per_half, 1.0);
+  float nv = max(n_view, 1e-4);
+  float a = s.roughness * s.roughness;
+  float a2 = a * a;
   float k = nh * nh * (a2 - 1.0) + 1.0;
-  float distribution = a2 / (kPi * k * k);
-  float visibility =
-      0.5 / (nl * sqrt(nv * nv * (1.0 - a2) + a2) + nv * sqrt(nl * nl * (1.0 - a2) + a2));
-  vec3 fresnel = s.f0 + (1.0 - s.f0) * pow(1.0 - vh, 5.0);
-  vec3 light = camera.sun_radiance.rgb * nl * sunlight(s.flat_normal);
+  float smith = nl * sqrt(nv * nv * (1.0 - a2) + a2) + nv * sqrt(nl * nl * (1.0 - a2) + a2);
+  float away = 1.0 - vh;
+  float away2 = away * away;
+  vec3 fresnel = s.f0 + (1.0 - s.f0) * (away2 * away2 * away);
+  vec3 light = kSunRadiance * nl * sunlight(s.flat_normal);
   diffuse = (1.0 - fresnel) * s.diffuse / kPi * light;
-  specular = fresnel * distribution * visibility * light;
+  specular = fresnel * (0.5 * a2 / (kPi * k * k * smith)) * light;
 }
 
 // Sky and ground as a hemisphere light; its mirror image with the split sum's fit of Karis 2014, "Physically
 // based shading on mobile".
 void sky_light(Surface s, vec3 view, out vec3 diffuse, out vec3 specular) {
-  vec3 above = mix(camera.sky_horizon.rgb, camera.sky_zenith.rgb, 0.4);
-  vec3 irradiance = camera.haze.w * mix(camera.ground.rgb, above, 0.5 + 0.5 * s.normal.y);
+  vec3 irradiance = mix(kLightBelow, kLightAbove, 0.5 + 0.5 * s.normal.y);
   float nv = clamp(dot(s.normal, view), 0.0, 1.0);
   vec4 r = s.roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
   float a = min(r.x * r.x, exp2(-9.28 * nv)) * r.x + r.y;
@@ -109,13 +120,13 @@ void sky_light(Surface s, vec3 view, out vec3 diffuse, out vec3 specular) {
 }
 
 void main() {
-  MaterialRecord material = materials[in_material];
-  vec4 base = base_color(material, in_uv01.xy, in_color);
-  vec3 emissive = material.emissive.rgb;
-  float metallic = material.factors.x;
-  float roughness = material.factors.y;
+  vec4 base = in_color;
+  if (has_texture(kTextureBaseColor)) base *= texture(textures[kTextureBaseColor], in_uv01.xy);
+  vec3 emissive = in_emissive.rgb;
+  float metallic = in_factors.x;
+  float roughness = in_factors.y;
   float occlusion = 1.0;
-  vec3 flat_normal = gl_FrontFacing ? in_normal : -in_normal;
+  vec3 flat_normal = normalize(gl_FrontFacing ? in_normal : -in_normal);
   vec3 normal = flat_normal;
   // The branches are on constants, so all derivatives are in uniform control flow, before any discard.
   if (has_texture(kTextureMetallicRoughness)) {
@@ -123,24 +134,24 @@ void main() {
     metallic *= mr.b;
     roughness *= mr.g;
   }
-  if (has_texture(kTextureNormal)) normal = mapped_normal(material, flat_normal);
+  if (has_texture(kTextureNormal)) normal = mapped_normal(flat_normal);
   if (has_texture(kTextureOcclusion)) {
     float ao = texture(textures[kTextureOcclusion], in_uv23.zw).r;
-    occlusion = 1.0 + material.textures[kTextureOcclusion].row1.w * (ao - 1.0);
+    occlusion = 1.0 + in_factors.w * (ao - 1.0);
   }
   if (has_texture(kTextureEmissive))
     emissive *= texture(textures[kTextureEmissive], in_uv4).rgb;
-  if (kAlphaMode == 1 && base.a < material.emissive.w) discard;
+  if (kAlphaMode == 1 && base.a < in_emissive.w) discard;
   float alpha = kAlphaMode == 2 ? base.a : 1.0;
 
-  if ((material.flags.x & kMaterialUnlit) != 0 || dot(in_normal, in_normal) == 0.0) {
+  if ((in_flags & kMaterialUnlit) != 0 || dot(in_normal, in_normal) == 0.0) {
     out_color = vec4(base.rgb * alpha, alpha);  // a colour for the screen: neither exposed nor tone-mapped
     return;
   }
-  vec3 view = camera.eye_m.w != 0.0 ? normalize(camera.eye_m.xyz - in_world) : camera.eye_m.xyz;
+  vec3 view = normalize(in_to_eye);
   Surface s;
-  s.normal = normalize(normal);
-  s.flat_normal = normalize(flat_normal);
+  s.normal = normal;
+  s.flat_normal = flat_normal;
   s.diffuse = base.rgb * (1.0 - metallic);
   s.f0 = mix(vec3(0.04), base.rgb, metallic);
   s.roughness = clamp(roughness, 0.045, 1.0);
@@ -154,5 +165,5 @@ void main() {
     vec3 reflection = sky_specular + sun_specular;
     alpha = clamp(alpha + 0.5 * max(reflection.r, max(reflection.g, reflection.b)) * (1.0 - alpha), 0.0, 1.0);
   }
-  out_color = vec4(tone_map(color * camera.sun_radiance.w), alpha);
+  out_color = vec4(tone_map(color * kExposure), alpha);
 }

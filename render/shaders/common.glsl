@@ -1,4 +1,5 @@
 // What every shader of the scene shares. Set 0: the frame; set 1: textures of a material.
+#include "light.h"
 #include "shared_types.h"
 
 layout(set = 0, binding = 0, std140) uniform CameraBuffer { CameraBlock camera; };
@@ -11,8 +12,8 @@ layout(constant_id = 1) const uint kTextureMask = 31;  // bit i: the material ha
 // Radiance of the sky in a direction; below the horizon a haze that darkens slowly downwards.
 vec3 sky_radiance(vec3 direction) {
   float up = direction.y;
-  vec3 sky = mix(camera.sky_horizon.rgb, camera.sky_zenith.rgb, pow(clamp(up, 0.0, 1.0), 0.55));
-  return mix(sky, camera.haze.rgb, smoothstep(0.0, 0.55, -up));
+  vec3 sky = mix(kSkyHorizon, kSkyZenith, sqrt(clamp(up, 0.0, 1.0)));
+  return mix(sky, kHaze, smoothstep(0.0, 0.55, -up));
 }
 
 // The highlights of the Khronos PBR Neutral tone mapper (Khronos 2024): colours below 0.76 stay as they are,

@@ -18,7 +18,7 @@ void main() {
     gl_Position = clip_position(world);
   }
   gl_PointSize = 1.0;
-  out_uv = kTextureMask != 0 ? texture_place(record.material, kTextureBaseColor) : vec2(0.0);
+  out_uv = texture_place(record.material, kTextureBaseColor);
   out_color = in_color;
   out_material_object = uvec2(record.material, record.object);
 }

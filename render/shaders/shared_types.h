@@ -25,7 +25,7 @@ struct ObjectRecord {
 /// One use of a texture. uv' = (dot(row0.xy, uv) + row0.z, dot(row1.xy, uv) + row1.z).
 struct MaterialTexture {
   vec4 row0;
-  vec4 row1;  // w: strength
+  vec4 row1;
 };
 
 const uint kTextureBaseColor = 0;
@@ -34,6 +34,8 @@ const uint kTextureNormal = 2;
 const uint kTextureOcclusion = 3;
 const uint kTextureEmissive = 4;
 const uint kTextureCount = 5;
+/// Beside the textures' bits in a pipeline's mask: the geometry has tangents for the normal map.
+const uint kTangents = 1u << 5;
 
 const uint kMaterialUnlit = 1;
 const uint kMaterialSecondTexcoord = 2;  // shifted left by the texture's index: it reads TEXCOORD_1
@@ -42,7 +44,7 @@ const uint kMaterialSecondTexcoord = 2;  // shifted left by the texture's index:
 struct MaterialRecord {
   vec4 base_color;
   vec4 emissive;  // w: alpha cutoff
-  vec4 factors;   // x metallic, y roughness
+  vec4 factors;   // metallic, roughness, strength of the normal map, of the occlusion map
   uvec4 flags;    // x: kMaterial…
   MaterialTexture textures[5];
 };
@@ -53,19 +55,14 @@ struct CameraBlock {
   mat4 shadow_from_world;
   mat4 world_from_clip;  // of directions: for the sky
   vec4 eye_m;            // w: 1 perspective, 0 orthographic (xyz is then the direction to the eye)
-  vec4 to_sun;           // w: 1 with shadows
-  vec4 sun_radiance;     // w: exposure
-  vec4 sky_zenith;       // w: side of a texel of the shadow map, m
-  vec4 sky_horizon;      // w: 1 / side of the shadow map in texels
-  vec4 ground;           // light that the ground throws back
-  vec4 haze;             // what lies far below the horizon; w: share of the sky's radiance that lights
+  vec4 shadow_texel;     // x: its side, m; y: 1 / side of the shadow map in texels
 };
 
 #ifdef __cplusplus
 static_assert(sizeof(ObjectRecord) == 64);
 static_assert(sizeof(MaterialTexture) == 32);
 static_assert(sizeof(MaterialRecord) == 64 + 160);
-static_assert(sizeof(CameraBlock) == 3 * 64 + 7 * 16);
+static_assert(sizeof(CameraBlock) == 3 * 64 + 2 * 16);
 }  // namespace scenegen::render
 #endif
 #endif

@@ -7,5 +7,5 @@ layout(location = 0) out vec4 out_color;
 
 void main() {
   vec3 direction = normalize(mat3(camera.world_from_clip) * vec3(in_clip, 1.0));
-  out_color = vec4(tone_map(sky_radiance(direction) * camera.sun_radiance.w), 1.0);
+  out_color = vec4(tone_map(sky_radiance(direction) * kExposure), 1.0);
 }

@@ -26,6 +26,7 @@ vec4 clip_position(vec3 world) { return camera.clip_from_world * vec4(world, 1.0
 // Where a texture is sampled. Here and not in the fragment shader: llvmpipe reads zeros from storage buffers for
 // helper invocations, so derivatives of anything computed from a material would be wrong at triangles' edges.
 vec2 texture_place(uint material, uint which) {
+  if ((kTextureMask & (1u << which)) == 0) return vec2(0.0);
   vec2 uv = (materials[material].flags.x & (kMaterialSecondTexcoord << which)) != 0 ? in_texcoord1 : in_texcoord0;
   MaterialTexture t = materials[material].textures[which];
   return vec2(dot(t.row0.xy, uv) + t.row0.z, dot(t.row1.xy, uv) + t.row1.z);

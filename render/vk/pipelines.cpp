@@ -157,8 +157,8 @@ vk::PrimitiveTopology topology(PrimitiveKind kind) {
 
 }  // namespace
 
-Pipelines::Pipelines(const Device& device, vk::SampleCountFlagBits color_samples)
-    : device_(device), color_samples_(color_samples) {
+Pipelines::Pipelines(const Device& device, vk::SampleCountFlagBits color_samples, bool shadows)
+    : device_(device), color_samples_(color_samples), shadows_(shadows) {
   using Stage = vk::ShaderStageFlagBits;
   using Type = vk::DescriptorType;
   const std::array frame_bindings{
@@ -219,12 +219,14 @@ vk::raii::Pipeline Pipelines::make(const PipelineKey& key) const {
     std::int32_t alpha_mode;
     std::uint32_t texture_mask;
     VkBool32 shadow;
+    VkBool32 shadows;
   };
   const Constants constants{static_cast<std::int32_t>(key.alpha), key.texture_mask,
-                            key.pass == PassKind::shadow ? VK_TRUE : VK_FALSE};
+                            key.pass == PassKind::shadow ? VK_TRUE : VK_FALSE, shadows_ ? VK_TRUE : VK_FALSE};
   constexpr std::array kEntries{vk::SpecializationMapEntry(0, offsetof(Constants, alpha_mode), 4),
                                 vk::SpecializationMapEntry(1, offsetof(Constants, texture_mask), 4),
-                                vk::SpecializationMapEntry(2, offsetof(Constants, shadow), 4)};
+                                vk::SpecializationMapEntry(2, offsetof(Constants, shadow), 4),
+                                vk::SpecializationMapEntry(3, offsetof(Constants, shadows), 4)};
   const vk::SpecializationInfo specialization(static_cast<std::uint32_t>(kEntries.size()), kEntries.data(),
                                               sizeof(constants), &constants);
   const bool color = key.pass == PassKind::color;

@@ -24,7 +24,7 @@ struct PipelineKey {
   PassKind pass = PassKind::color;
   AlphaMode alpha = AlphaMode::opaque;
   PrimitiveKind kind = PrimitiveKind::triangles;
-  std::uint32_t texture_mask = 0;  ///< bit i: samples texture i (kTexture…)
+  std::uint32_t texture_mask = 0;  ///< bit i: samples texture i (kTexture…); kTangents
   bool listed = false;             ///< slots come from a third vertex buffer, a 32-bit number an instance
   friend auto operator<=>(const PipelineKey&, const PipelineKey&) = default;
 };
@@ -34,7 +34,8 @@ struct PipelineKey {
 /// it.
 class Pipelines {
  public:
-  Pipelines(const Device& device, vk::SampleCountFlagBits color_samples);
+  /// `shadows`: colour passes read the shadow map.
+  Pipelines(const Device& device, vk::SampleCountFlagBits color_samples, bool shadows);
 
   [[nodiscard]] vk::RenderPass render_pass(PassKind pass, PassPart part = PassPart::whole) const;
   [[nodiscard]] vk::PipelineLayout layout() const { return *layout_; }
@@ -54,6 +55,7 @@ class Pipelines {
 
   const Device& device_;
   vk::SampleCountFlagBits color_samples_;
+  bool shadows_;
   vk::raii::DescriptorSetLayout frame_set_layout_{nullptr};
   vk::raii::DescriptorSetLayout texture_set_layout_{nullptr};
   vk::raii::PipelineLayout layout_{nullptr};

@@ -17,7 +17,8 @@ DrawStage::DrawStage(const ExperimentContext& context, const Scene& scene, const
     : device_(context.device),
       view_(view),
       memory_(*device_),
-      pipelines_(*device_, context.samples == 4 ? vk::SampleCountFlagBits::e4 : vk::SampleCountFlagBits::e1),
+      pipelines_(*device_, context.samples == 4 ? vk::SampleCountFlagBits::e4 : vk::SampleCountFlagBits::e1,
+                 false),
       target_(render::make_target(*device_, memory_, pipelines_, pass, {context.width, context.height},
                                   pass == PassKind::color && context.samples == 4
                                       ? vk::SampleCountFlagBits::e4
@@ -68,7 +69,7 @@ StageFrame DrawStage::frame(const std::function<void(const render::PassContext&)
   StageFrame out;
   render::vkr::Frame& frame = ring_.begin();
   render::vkr::Barriers barriers;
-  gpu_->record_updates(frame, barriers, render::camera_block(view_, scene_->bounds_m(), false), *scene_);
+  gpu_->record_updates(frame, barriers, render::camera_block(view_, scene_->bounds_m()), *scene_);
   const render::PassContext context{*device_, memory_,  pipelines_,        *gpu_, *scene_,
                                     frame,    barriers, ring_.completed(), 1};
   Stopwatch watch;
