@@ -1,5 +1,6 @@
 // The light of every picture; compiled as C++ and as GLSL. Constants, and not part of the camera block: a
-// uniform is a load and a bounds check a fragment on llvmpipe (these eight made half of a town's shading there).
+// uniform is a load and a bounds check a fragment on llvmpipe (these eight made half of a town's shading
+// there).
 #ifndef SCENEGEN_RENDER_SHADERS_LIGHT_H
 #define SCENEGEN_RENDER_SHADERS_LIGHT_H
 
@@ -9,8 +10,8 @@ namespace scenegen::render {
 using glm::vec3;
 #endif
 
-// A sun over the viewer's left shoulder (seen from the default view), so that one face of a building is bright,
-// the other lies in the blue light of the sky.
+// A sun over the viewer's left shoulder (seen from the default view), so that one face of a building is
+// bright, the other lies in the blue light of the sky.
 const vec3 kToSun = normalize(vec3(-0.42, 0.62, 0.66));
 const vec3 kSunRadiance = vec3(4.9, 4.35, 3.6);
 const vec3 kSkyZenith = vec3(0.24, 0.44, 0.82);
