@@ -21,10 +21,7 @@ glm::vec3 middle(const Box& box) {
 
 }  // namespace
 
-HiZLayout::HiZLayout(const DrawScene& scene, std::span<const GeometryRange> ranges, bool all_mirrored)
-    : mirrored(all_mirrored) {
-  // Groups: neighbours of one state and geometry.
-  std::vector<std::uint32_t> firsts;
+HiZCut::HiZCut(const DrawScene& scene) {
   const DrawPrimitive* last = nullptr;
   for (std::uint32_t slot = 0; slot < scene.solid_end(); ++slot) {
     const DrawPrimitive& primitive = scene.primitive(slot);
@@ -34,12 +31,26 @@ HiZLayout::HiZLayout(const DrawScene& scene, std::span<const GeometryRange> rang
     if (!same) firsts.push_back(slot);
     last = &primitive;
   }
-  block_slots = block_slots_of(scene.solid_end(), firsts.size());
+  if (!firsts.empty() && scene.solid_end() / firsts.size() < 128) block_slots = 64;
   firsts.push_back(scene.solid_end());
+}
+
+std::uint64_t HiZCut::blocks() const {
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i + 1 < firsts.size(); ++i)
+    sum += (firsts[i + 1] - firsts[i] + block_slots - 1) / block_slots;
+  return sum;
+}
+
+HiZLayout::HiZLayout(const DrawScene& scene, std::span<const GeometryRange> ranges, bool all_mirrored)
+    : mirrored(all_mirrored) {
+  const HiZCut cut(scene);
+  block_slots = cut.block_slots;
   slots.resize(scene.solid_end());
   std::iota(slots.begin(), slots.end(), 0U);
   block_of_slot.assign(scene.solid_end(), kHiZNone);
-  for (std::size_t i = 0; i + 1 < firsts.size(); ++i) add_group(scene, ranges, firsts[i], firsts[i + 1]);
+  for (std::size_t i = 0; i + 1 < cut.firsts.size(); ++i)
+    add_group(scene, ranges, cut.firsts[i], cut.firsts[i + 1]);
 
   for (Run& run : runs) {
     run.mirrored = all_mirrored;

@@ -13,6 +13,16 @@
 
 namespace scenegen::render {
 
+/// How opaque and masked slots are cut into blocks: what is known before anything is laid out.
+struct HiZCut {
+  std::vector<std::uint32_t> firsts;  ///< of groups, neighbours of one state and geometry; and their end
+  std::uint32_t block_slots = 256;    ///< at most, of each block; 64 where few share a geometry
+
+  explicit HiZCut(const DrawScene& scene);
+  /// As many as a layout has, and those of geometries without indices, of which it draws nothing.
+  [[nodiscard]] std::uint64_t blocks() const;
+};
+
 /// Slots of the scene in blocks that share state and geometry and are compact in space. Not changed once it
 /// is made.
 struct HiZLayout {
@@ -23,7 +33,7 @@ struct HiZLayout {
     std::uint32_t first = 0;
     std::uint32_t end = 0;
   };
-  std::uint32_t block_slots = 256;   ///< at most, of each block
+  std::uint32_t block_slots = 256;   ///< as of HiZCut
   std::vector<std::uint32_t> slots;  ///< what `first` and `count` of blocks speak of
   std::vector<HiZBlock> blocks;
   std::vector<HiZGroup> groups;
@@ -32,14 +42,8 @@ struct HiZLayout {
   std::vector<std::uint32_t> run_of_block;
   bool mirrored = false;  ///< some runs draw mirrored slots
 
-  /// 256, or 64 where geometries are shared by few.
-  [[nodiscard]] static std::uint32_t block_slots_of(std::uint64_t slots, std::uint64_t groups) {
-    return groups > 0 && slots / groups < 128 ? 64 : 256;
-  }
-
-  /// `ranges`: of each geometry. Blocks of 256 slots where as many share a geometry, else of 64, along a
-  /// Hilbert curve through the middles of where they are now. States of which a slot is mirrored now draw
-  /// such slots, with `all_mirrored` every one.
+  /// `ranges`: of each geometry. Cut as HiZCut says, along a Hilbert curve through the middles of where
+  /// slots are now. States of which a slot is mirrored now draw such slots, with `all_mirrored` every one.
   HiZLayout(const DrawScene& scene, std::span<const GeometryRange> ranges, bool all_mirrored);
   /// Is this slot drawn when it is mirrored?
   [[nodiscard]] bool draws_mirrored(std::uint32_t slot) const;

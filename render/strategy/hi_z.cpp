@@ -12,30 +12,12 @@
 namespace scenegen::render {
 namespace {
 
-/// As HiZLayout makes them, mirrored slots left aside.
-double count_blocks(const DrawScene& scene) {
-  std::vector<std::uint32_t> groups;
-  const DrawPrimitive* last = nullptr;
-  for (std::uint32_t slot = 0; slot < scene.solid_end(); ++slot) {
-    const DrawPrimitive& primitive = scene.primitive(slot);
-    if (last == nullptr ||
-        (last != &primitive && (last->batch != primitive.batch || last->geometry != primitive.geometry)))
-      groups.push_back(0);
-    ++groups.back();
-    last = &primitive;
-  }
-  const std::uint32_t each = HiZLayout::block_slots_of(scene.solid_end(), groups.size());
-  std::uint64_t blocks = 0;
-  for (const std::uint32_t slots : groups) blocks += (slots + each - 1) / each;
-  return static_cast<double>(blocks);
-}
-
 class HiZStrategy final : public DeviceCulled {
  public:
   explicit HiZStrategy(const StrategyContext& context)
       : DeviceCulled(context),
         frames_in_flight_(context.frames_in_flight),
-        blocks_(count_blocks(context.scene)) {
+        blocks_(static_cast<double>(HiZCut(context.scene).blocks())) {
     if (!context.device.indirect_nodes) {
       go_on_as_inline("the device has no indirect draws with a first instance");
     } else if (!vkr::can_sample_depth(context.device, vk::SampleCountFlagBits::e4)) {

@@ -107,6 +107,15 @@ TEST_CASE("blocks hold each slot once, of one state and geometry, and are compac
   CHECK(area < 3 * 1.5 * 100 * 100);
 }
 
+TEST_CASE("how many blocks there will be is known before they are laid out") {
+  for (const std::size_t objects : {1U, 100U, 300U, 6000U}) {
+    const Laid laid(objects);
+    const HiZCut cut(laid.scene);
+    CHECK(cut.blocks() == laid.layout.blocks.size());
+    CHECK(cut.block_slots == (objects == 6000 ? 256 : 64));
+  }
+}
+
 TEST_CASE("a frame looks at the blocks in the frustum, also where their slots moved to, nearer ones first") {
   Laid laid(6000);
   const std::array views{look({0, 2, 0}, {30, 2, 5}, kPathSize), look({-45, 3, 40}, {0, 0, 0}, kPathSize),
