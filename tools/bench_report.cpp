@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tools/bench_names.h"
+#include "tools/report/report.h"
 #include "tools/text.h"
 
 namespace scenegen::tools {
@@ -50,19 +51,26 @@ std::size_t number_of(const ordered_json* results, std::span<const ordered_json>
   return static_cast<std::size_t>(results - all.data()) + 1;
 }
 
-/// Labels that say what differs: device, frames in flight and results only where they do.
-void label(BenchView& view, std::span<const ordered_json> results) {
-  std::set<std::string> devices;
+/// The strategy, or the other renderer and its version.
+std::string way_of(const ordered_json& c) {
+  const std::string version = text(c, "version");
+  return text(c, "strategy") + (version.empty() ? "" : " " + version);
+}
+
+/// Devices that a way of drawing was measured on, over all results.
+using DevicesOfWays = std::map<std::string, std::set<std::string>>;
+
+/// Labels that say what differs: device, frames in flight and results only where they do. A browser's device
+/// has a long name and draws nothing of ours, so it is left out beside the device that draws ours.
+void label(BenchView& view, std::span<const ordered_json> results, const DevicesOfWays& devices) {
   std::set<std::string> in_flight;
-  for (const Row& row : view.rows) {
-    devices.insert(text(*row.json, "device"));
-    in_flight.insert(at(*row.json, "framesInFlight").dump());
-  }
+  for (const Row& row : view.rows) in_flight.insert(at(*row.json, "framesInFlight").dump());
   std::map<std::string, int> known;
   for (Row& row : view.rows) {
-    row.label = text(*row.json, "strategy");
+    const std::string way = way_of(*row.json);
+    row.label = way;
     if (in_flight.size() > 1) row.label += ", " + at(*row.json, "framesInFlight").dump() + " in flight";
-    if (devices.size() > 1) row.label += ", " + text(*row.json, "device");
+    if (devices.at(way).size() > 1) row.label += ", " + text(*row.json, "device");
     ++known[row.label];
   }
   for (Row& row : view.rows) {
@@ -75,6 +83,7 @@ std::vector<BenchView> views_of(std::span<const ordered_json> results) {
   const BenchNames cameras(results, "camera");
   std::map<std::pair<std::size_t, std::size_t>, std::size_t> known;
   std::vector<BenchView> out;
+  DevicesOfWays devices;
   for (const ordered_json& result : results) {
     const auto cases = result.find("cases");
     if (cases == result.end() || !cases->is_array()) continue;
@@ -83,6 +92,7 @@ std::vector<BenchView> views_of(std::span<const ordered_json> results) {
       const std::size_t camera = cameras.find(result, text(c, "camera"));
       const auto [place, added] = known.emplace(std::pair(scene, camera), out.size());
       if (added) out.push_back({scenes.title(scene), cameras.title(camera), {}, 0});
+      devices[way_of(c)].insert(text(c, "device"));
       BenchView& view = out[place->second];
       view.rows.push_back({&c, &result, {}});
       const ordered_json mean = at(c, "frameMs/mean");
@@ -90,7 +100,7 @@ std::vector<BenchView> views_of(std::span<const ordered_json> results) {
         view.best_ms = mean.get<double>();
     }
   }
-  for (BenchView& view : out) label(view, results);
+  for (BenchView& view : out) label(view, results, devices);
   return out;
 }
 
@@ -250,6 +260,40 @@ Chart overview_chart(const std::vector<BenchView>& views, const std::string& id)
   return out;
 }
 
+/// "Frames of three.js 187 take 5.8 to 6.9 times as long as those of the fastest, of inline 1.4 to 1.5
+/// times."
+std::string behind(const std::vector<BenchView>& views) {
+  std::map<std::string, std::pair<double, double>> ranges;
+  for (const BenchView& view : views) {
+    for (const Row& row : view.rows) {
+      const ordered_json mean = at(*row.json, "frameMs/mean");
+      if (!mean.is_number() || view.best_ms <= 0) continue;
+      const double factor = mean.get<double>() / view.best_ms;
+      const auto [place, added] = ranges.emplace(row.label, std::pair(factor, factor));
+      if (added) continue;
+      place->second.first = std::min(place->second.first, factor);
+      place->second.second = std::max(place->second.second, factor);
+    }
+  }
+  using Range = std::pair<double, double>;
+  std::vector<std::pair<std::string, Range>> order;
+  for (const auto& [name, range] : ranges) {
+    if (factor_text(range.second) != factor_text(1)) order.emplace_back(name, range);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.second.second > b.second.second; });
+  std::string out;
+  for (const auto& [name, range] : order) {
+    const std::string low = factor_text(range.first);
+    const std::string high = factor_text(range.second);
+    const bool first = out.empty();
+    out.append(first ? " Frames of " : ", of ").append(name).append(first ? " take " : " ");
+    out.append(low == high ? low : low + " to " + high);
+    if (first) out += " times as long as those of the fastest";
+  }
+  return out.empty() ? out : out + ".";
+}
+
 /// "adaptive is fastest in 6 of 10 views, inline in 4."
 std::string summary(const std::vector<BenchView>& views, std::size_t failed) {
   std::map<std::string, int> wins;
@@ -275,11 +319,12 @@ std::string summary(const std::vector<BenchView>& views, std::size_t failed) {
   }
   out = out.empty() ? "Nothing was measured" : out;
   if (failed > 0) out += "; " + counted(failed, "case") + " failed";
-  return out + ".";
+  return out + "." + behind(views);
 }
 
 std::string machine_line(const ordered_json& results) {
-  std::string out = text(results, "program/name") + " " + text(results, "program/version");
+  std::string out = text(results, "program/name");
+  if (const std::string version = text(results, "program/version"); !version.empty()) out += " " + version;
   for (const ordered_json& device : at(results, "devices")) {
     out += ", " + text(device, "name");
     const std::string driver = text(device, "driver");
@@ -297,6 +342,26 @@ std::string machine_line(const ordered_json& results) {
   return out + ".";
 }
 
+/// "Results 1, 3: ...": one line for all that were measured alike.
+std::vector<std::string> machine_lines(std::span<const ordered_json> results) {
+  std::vector<std::pair<std::string, std::string>> lines;  // what was measured with, whose numbers
+  for (const ordered_json& result : results) {
+    const std::string line = machine_line(result);
+    const std::string number = std::to_string(number_of(&result, results));
+    const auto known =
+        std::find_if(lines.begin(), lines.end(), [&](const auto& other) { return other.first == line; });
+    if (known == lines.end()) {
+      lines.emplace_back(line, number);
+    } else {
+      known->second += ", " + number;
+    }
+  }
+  std::vector<std::string> out;
+  for (const auto& [line, numbers] : lines)
+    out.push_back(results.size() > 1 ? "Results " + numbers + ": " + line : line);
+  return out;
+}
+
 }  // namespace
 
 DocumentSection bench_section_of_all(std::span<const ordered_json> results, const std::string& id) {
@@ -309,11 +374,7 @@ DocumentSection bench_section_of_all(std::span<const ordered_json> results, cons
     }
   }
   out.paragraphs.push_back(summary(views, out.failures.size()));
-  for (const ordered_json& result : results) {
-    const std::string number =
-        results.size() > 1 ? "Results " + std::to_string(number_of(&result, results)) + ": " : "";
-    out.paragraphs.push_back(number + machine_line(result));
-  }
+  for (std::string& line : machine_lines(results)) out.paragraphs.push_back(std::move(line));
   if (views.size() > 1) {
     if (Chart chart = overview_chart(views, id + "-views"); !chart.series.empty())
       out.blocks.emplace_back(std::move(chart));
@@ -344,7 +405,8 @@ Document bench_document(std::span<const ordered_json> results) {
   const auto add = [&out](const char* name, std::string value) {
     if (!value.empty()) out.facts.emplace_back(name, std::move(value));
   };
-  add("program", join(std::array{text(first, "program/name"), text(first, "program/version")}, " "));
+  const std::string version = text(first, "program/version");
+  add("program", text(first, "program/name") + (version.empty() ? "" : " " + version));
   add("compiler", text(first, "program/compiler"));
   add("machine", text(first, "machine/processor"));
   add("system", text(first, "machine/system"));

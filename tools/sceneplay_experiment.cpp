@@ -129,7 +129,15 @@ class Laboratory {
     const auto word = [](const ordered_json& v) { return v.is_string() ? v.get<std::string>() : v.dump(); };
     std::vector<std::pair<std::string, std::string>> out{{"program", "scenegen " SCENEGEN_VERSION},
                                                          {"compiler", compiler()}};
-    for (const auto& [key, value] : machine.items()) out.emplace_back(key, word(value));
+    for (const auto& [key, value] : machine.items()) {
+      if (key == "memoryBytes") {
+        out.emplace_back("memory", human_bytes(value.get<std::uint64_t>()));
+      } else if (key == "load" && value.is_number()) {
+        out.emplace_back("load", human_real(value.get<double>(), 2));
+      } else {
+        out.emplace_back(key, word(value));
+      }
+    }
     if (context_.device) {
       out.emplace_back("device", context_.device_info.name);
       out.emplace_back("driver", context_.device_info.driver);

@@ -61,10 +61,17 @@ function wideTable() {
   ] };
 }
 
+/// Marks far to the right: what they hide from eyes must not widen the page.
+function comparedTable() {
+  const pairs = Array.from({ length: 9 }, (_, i) => [column(`p${i}`, `quantity number ${i}`, 'ms', 'paper', 'lower'), column(`o${i}`, `quantity number ${i}`, 'ms', 'ours', 'lower', `p${i}`)]);
+  return { kind: 'table', id: 'compared', title: 'Many comparisons', columns: [column('name', 'scene', ''), ...pairs.flat()], rows: [['town', ...pairs.flatMap(() => [10, 20])]] };
+}
+
 function harmful() {
   return { id: 'harm', title: kHarm, paragraphs: [kHarm, 'x'.repeat(900)], blocks: [
     { kind: 'table', id: 'harm-table', title: kHarm, note: kHarm, columns: [column(kHarm, kHarm, kHarm), column('b', 'figure', kHarm)],
       rows: [[kHarm, 1e300], [kHarm, -1e-300]] },
+    comparedTable(),
     { kind: 'chart', id: 'harm-chart', title: kHarm, xTitle: kHarm, yTitle: kHarm, series: [{ name: kHarm, points: [{ x: -1e308, y: 1e308 }, { x: 0, y: 1e-320 }] }] },
   ] };
 }

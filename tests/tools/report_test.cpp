@@ -110,6 +110,31 @@ TEST_CASE("axes have round ticks, whatever the values are") {
   }
 }
 
+TEST_CASE("one long frame does not press the curves flat, and is told of") {
+  Chart chart{"c", "C", "view", "ms", {{"a", {{1, 5, 4, 150}, {2, 6, 5, 7}}}}};
+  const auto lines = [&] { return chart_svg(chart, "c", {"", 600, 400}); };
+  CHECK(lines().find(">150<") == std::string::npos);
+  CHECK(left_out(chart) == "A spread that reaches up to 150 is cut at the top.");
+  chart.series[0].points[0].high = 11;
+  CHECK(left_out(chart).empty());
+  // Whole numbers of views have no tenths between them.
+  CHECK(lines().find(">1<") != std::string::npos);
+  CHECK(lines().find(">1.4<") == std::string::npos);
+  chart.series[0].points[1].x = 2.5;
+  CHECK(lines().find(">1.4<") != std::string::npos);
+}
+
+TEST_CASE("runs have names that tell them apart") {
+  Document cpu = small();
+  cpu.facts = {{"processor", "Intel"}};
+  Document two = small();
+  two.facts.emplace_back("device", "other");
+  const RunReport all{"T", {{small(), ""}, {cpu, ""}, {two, ""}}};
+  CHECK(run_name(all, 0) == "GPU");
+  CHECK(run_name(all, 1) == "Intel");
+  CHECK(run_name(all, 2) == "Title");
+}
+
 TEST_CASE("the paper's curve has the color of ours of the same name") {
   const Chart chart{
       "c", "C", "x", "y", {{"a (D)", {}, Origin::paper}, {"b", {}}, {"A", {}}, {"c", {}, Origin::paper}}};
@@ -120,7 +145,8 @@ TEST_CASE("Markdown and CSV say what the page says") {
   const RunReport all{"Both", {{small(), ""}, {small(), ""}}};
   const std::string text = report_markdown(all, "");
   CHECK(text.starts_with("# Both\n\n## At a glance\n"));
-  CHECK(text.find("| GPU | First | 1 | 1 | 2 | ") != std::string::npos);
+  CHECK(text.find("| GPU: First | First | 1 | 1 | 2 | ") != std::string::npos);
+  CHECK(text.find("\n## GPU: First, 2\n") != std::string::npos);
   CHECK(text.find("| a\\|b | 10.00 | 5.00 \u2713 2.0\u00D7 |\n") != std::string::npos);
   CHECK(text.find("| c | 10.00 | 30.00 \u2717 3.0\u00D7 |\n") != std::string::npos);
   const auto files = report_csv(all);
@@ -177,7 +203,11 @@ TEST_CASE("the paper's tables stand at the top, a line each") {
   CHECK(finding_of(1, 2, Better::lower) == Finding::better);
   CHECK(finding_of(1, 2, Better::higher) == Finding::worse);
   CHECK(finding_of(1.01, 1, Better::lower) == Finding::level);
+  // What is behind stands first.
   const std::string text = report_markdown(all, "");
+  CHECK(text.find("**Behind the paper, or not as it says: 1**") <
+        text.find("**Ahead of the paper, or as it says: 1**"));
+  CHECK(text.find("Level with it") == std::string::npos);
   CHECK(
       text.find("| D table 6 | kept \\| &lt;b\\> | 13.9 ms | 8.6 ms | \u2713 better | less is recorded |\n") <
       text.find("Figures of ours beside the paper's"));
@@ -185,6 +215,8 @@ TEST_CASE("the paper's tables stand at the top, a line each") {
   Warnings warnings;
   const std::string html = report_html(all, warnings);
   CHECK(html.find("class=\"verdicts\"") < html.find("class=\"glance\""));
+  CHECK(html.find("not as it says: 1</th>") < html.find("octree slower"));
+  CHECK(html.find("octree slower") < html.find("or as it says: 1</th>"));
   CHECK(html.find("kept | &lt;b&gt;") != std::string::npos);
   CHECK(html.find("</span> differs</span>") != std::string::npos);
   const auto files = report_csv(all);

@@ -219,7 +219,7 @@ void judge_queries(const ExperimentContext& context, std::size_t count, double s
               on_device(context, "the first boxes cover nearly all of the " + std::to_string(context.width) +
                                      "x" + std::to_string(context.height) +
                                      " pixels; D does not give its picture's size")},
-             device_ms * each, *theirs_ms * each, "us", Better::lower));
+             device_ms * each, *theirs_ms * each, "\u00B5s", Better::lower));
 }
 
 void fill(const ExperimentContext& context, const std::vector<AskedNode>& asked, std::size_t objects,

@@ -114,7 +114,9 @@ void judge_technique(const Technique& technique, std::uint32_t objects, const Re
   if (!record || !submit) return;
   const double ours_ms = spread_of(r.record_ms).median + spread_of(r.submit_ms).median;
   const double ns = 1e6 / objects;
-  const std::string memory_each = with_unit(static_cast<double>(r.commands_bytes) * 1e-3 / objects, "kB");
+  const double bytes_each = static_cast<double>(r.commands_bytes) / objects;
+  const std::string memory_each =
+      bytes_each < 1000 ? with_unit(bytes_each, "B") : with_unit(bytes_each * 1e-3, "kB");
   const std::string why = technique.each == 1
                               ? "each command buffer takes " + memory_each +
                                     " of the host's memory here, and submitting reads them all"

@@ -31,7 +31,8 @@ void linear_ticks(Axis& axis, const AxisOptions& options) {
     axis.low -= half;
     axis.high += half;
   }
-  const double step = nice_step((axis.high - axis.low) / options.wanted);
+  const double least = (axis.high - axis.low) / options.wanted;
+  const double step = nice_step(options.whole ? std::max(least, 1.0) : least);
   double first = std::ceil(axis.low / step - 1e-9);
   double last = std::floor(axis.high / step + 1e-9);
   if (options.to_ticks) {

@@ -25,6 +25,7 @@ struct AxisOptions {
   int wanted = 6;          ///< ticks, about
   bool from_zero = false;  ///< a linear axis begins at 0 when its values are positive and not all alike
   bool to_ticks = false;   ///< a linear axis ends at ticks
+  bool whole = false;      ///< its ticks are whole numbers
 };
 /// `values` that an axis cannot show are left out.
 [[nodiscard]] Axis make_axis(const std::vector<double>& values, const AxisOptions& options);

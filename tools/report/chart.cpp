@@ -38,6 +38,19 @@ std::size_t stride_of(const Series& series) {
   return (series.points.size() + kMostDrawn - 1) / kMostDrawn;
 }
 
+/// How far up spreads may reach: one frame that took thirty times as long would press all curves flat. Charts
+/// with a logarithmic axis show it.
+double spread_limit(const Chart& chart) {
+  constexpr double kMost = 2;  // of the highest point
+  double highest = -INFINITY;
+  for (const Series& series : chart.series) {
+    for (const ChartPoint& point : series.points) {
+      if (std::isfinite(point.y)) highest = std::max(highest, point.y);
+    }
+  }
+  return chart.log_y || !(highest > 0) ? INFINITY : kMost * highest;
+}
+
 /// Where things are on the drawing.
 struct Plot {
   const Chart& chart;
@@ -50,6 +63,8 @@ struct Plot {
     const double foot = y.log ? 8 : 0;
     return bottom - foot - y.place(value) * (bottom - foot - top - 4);
   }
+  /// An end of a spread, cut at the top of the drawing.
+  [[nodiscard]] double cut(double end) const { return std::min(end, y.high); }
   [[nodiscard]] std::string at(double vx, double vy) const { return number(px(vx)) + " " + number(py(vy)); }
   [[nodiscard]] bool shows(const ChartPoint& point) const { return x.shows(point.x) && y.shows(point.y); }
   /// What of a series is drawn.
@@ -70,12 +85,19 @@ Plot make_plot(const Chart& chart, const ChartSize& size) {
     for (const ChartPoint& point : series.points) {
       xs.push_back(point.x);
       ys.push_back(point.y);
-      if (point.low) ys.push_back(*point.low);
-      if (point.high) ys.push_back(*point.high);
     }
   }
+  const double most = spread_limit(chart);
+  for (const Series& series : chart.series) {
+    for (const ChartPoint& point : series.points) {
+      if (point.low) ys.push_back(std::min(*point.low, most));
+      if (point.high) ys.push_back(std::min(*point.high, most));
+    }
+  }
+  // Numbers of views or of frames have nothing between them.
+  const bool whole = std::all_of(xs.begin(), xs.end(), [](double x) { return x == std::floor(x); });
   const int wanted_x = std::max(3, static_cast<int>(size.width / 75));
-  Plot out{chart, make_axis(xs, {chart.log_x, wanted_x, false, false}),
+  Plot out{chart, make_axis(xs, {chart.log_x, wanted_x, false, false, whole}),
            make_axis(ys, {chart.log_y, chart.log_y ? 8 : 6, true, true})};
   std::size_t widest = 1;
   for (const double tick : out.y.ticks) widest = std::max(widest, display_width(out.y.text(tick)));
@@ -134,7 +156,7 @@ std::string band_svg(const Plot& plot, const std::vector<ChartPoint>& points, co
   std::string back;
   for (const ChartPoint& point : points) {
     const auto spread = [&](const std::optional<double>& end) {
-      return end && plot.y.shows(*end) ? *end : point.y;
+      return end && plot.y.shows(*end) ? plot.cut(*end) : point.y;
     };
     there += (there.empty() ? "M" : "L") + plot.at(point.x, spread(point.high));
     back.insert(0, "L" + plot.at(point.x, spread(point.low)));
@@ -150,8 +172,10 @@ std::string whiskers_svg(const Plot& plot, const std::vector<ChartPoint>& points
     const double high = point.high.value_or(point.y);
     if (!(low < high) || !plot.y.shows(low) || !plot.y.shows(high)) continue;
     const double x = plot.px(point.x);
-    for (const double end : {low, high}) path += "M" + number(x - 3) + " " + number(plot.py(end)) + "h6";
-    path += "M" + plot.at(point.x, low) + "V" + number(plot.py(high));
+    for (const double end : {low, high}) {
+      if (plot.cut(end) == end) path += "M" + number(x - 3) + " " + number(plot.py(end)) + "h6";
+    }
+    path += "M" + plot.at(point.x, plot.cut(low)) + "V" + number(plot.py(plot.cut(high)));
   }
   return path.empty() ? path : "<path class=\"whisker " + classes + "\" d=\"" + path + "\"/>";
 }
@@ -288,7 +312,15 @@ std::string left_out(const Chart& chart) {
                                                      [&](const ChartPoint& p) { return !plot.shows(p); }));
     stride = std::max(stride, stride_of(series));
   }
+  double reach = 0;
+  for (const Series& series : chart.series) {
+    for (const ChartPoint& point : series.points) {
+      if (point.high && plot.shows(point) && plot.y.shows(*point.high)) reach = std::max(reach, *point.high);
+    }
+  }
   std::string out;
+  if (reach > plot.y.high)
+    out += "A spread that reaches up to " + figure_text(reach) + " is cut at the top. ";
   if (hidden > 0)
     out += counted(hidden, "point") + (hidden == 1 ? " is" : " are") +
            " not drawn: a logarithmic axis has no place for what is not above 0. ";

@@ -95,11 +95,56 @@ void choose_decimals(ColumnFormat& format, std::vector<double> figures) {
 
 }  // namespace
 
-std::string run_name(const ReportRun& run) {
-  for (const auto& [name, value] : run.document.facts) {
-    if ((name == "device" || name == "Device" || name == "GPU") && !value.empty()) return value;
+namespace {
+
+std::string own_name(const Document& document) {
+  std::vector<std::string> devices;
+  std::string processor;
+  for (const auto& [name, value] : document.facts) {
+    if ((name == "device" || name == "Device" || name == "GPU") && !value.empty()) devices.push_back(value);
+    if (name == "processor") processor = value;
   }
-  return run.document.title;
+  if (devices.size() == 1) return devices.front();
+  return devices.empty() && !processor.empty() ? processor : document.title;
+}
+
+/// What a run is of: its first section, and how many there are beside it.
+std::string subject(const Document& document) {
+  if (document.sections.empty()) return document.title;
+  const std::size_t more = document.sections.size() - 1;
+  return document.sections.front().title + (more == 0 ? "" : " and " + std::to_string(more) + " more");
+}
+
+}  // namespace
+
+std::string run_name(const RunReport& report, std::size_t run) {
+  const Document& document = report.runs[run].document;
+  std::string name = own_name(document);
+  const std::string of = subject(document);
+  std::size_t alike = 0;
+  std::size_t same_before = 0;
+  for (std::size_t i = 0; i < report.runs.size(); ++i) {
+    if (own_name(report.runs[i].document) != name) continue;
+    ++alike;
+    if (i < run && subject(report.runs[i].document) == of) ++same_before;
+  }
+  if (alike == 1) return name;
+  name.append(": ").append(of);
+  return same_before == 0 ? name : name + ", " + std::to_string(same_before + 1);
+}
+
+std::vector<VerdictGroup> verdict_groups(const Document& document) {
+  // better, level, worse, agrees, differs
+  constexpr std::array<std::size_t, 5> kGroup{2, 1, 0, 2, 0};
+  std::vector<VerdictGroup> all{{"Behind the paper, or not as it says", {}},
+                                {"Level with it", {}},
+                                {"Ahead of the paper, or as it says", {}}};
+  for (const DocumentSection& section : document.sections) {
+    for (const Verdict& v : section.verdicts)
+      all[kGroup[static_cast<std::size_t>(v.finding)]].verdicts.push_back(&v);
+  }
+  std::erase_if(all, [](const VerdictGroup& group) { return group.verdicts.empty(); });
+  return all;
 }
 
 std::string anchor(std::size_t run, const std::string& kind, const std::string& id) {

@@ -108,7 +108,7 @@ std::string counts_html(const Tally& t) {
 
 std::string headline_html(const RunReport& report, std::size_t run, const Tally& all) {
   std::string out = "<p class=\"headline\">";
-  out += report.runs.size() > 1 ? escaped(run_name(report.runs[run])) + ": better" : "Better";
+  out += report.runs.size() > 1 ? escaped(run_name(report, run)) + ": better" : "Better";
   out += " than the paper in <strong>" + std::to_string(all.better) + "</strong> of " +
          counted(all.count(), "figure") + ", level in <strong>" + std::to_string(all.level) +
          "</strong>, worse in <strong>" + std::to_string(all.worse) +
@@ -139,23 +139,39 @@ std::string finding_html(Finding finding) {
          std::string(sign_of(finding)) + "</span> " + std::string(word_of(finding)) + "</span>";
 }
 
+std::string verdict_html(const Verdict& v) {
+  return "<tr><th scope=\"row\">" + escaped(v.source) + "</th><td>" + escaped(v.what) +
+         "</td><td class=\"paper\"><span class=\"key\">paper </span>" + escaped(v.paper) +
+         "</td><td class=\"ours\"><span class=\"key\">ours </span>" + escaped(v.ours) +
+         "</td><td class=\"s\">" + finding_html(v.finding) + "</td><td>" + escaped(v.why) + "</td></tr>\n";
+}
+
 /// The paper's tables and claims, a line each.
 std::string verdicts_html(const ReportRun& run) {
-  std::string rows;
-  for (const DocumentSection& section : run.document.sections) {
-    for (const Verdict& v : section.verdicts) {
-      rows += "<tr><th scope=\"row\">" + escaped(v.source) + "</th><td>" + escaped(v.what) +
-              "</td><td class=\"paper\"><span class=\"key\">paper </span>" + escaped(v.paper) +
-              "</td><td class=\"ours\"><span class=\"key\">ours </span>" + escaped(v.ours) +
-              "</td><td class=\"s\">" + finding_html(v.finding) + "</td><td>" + escaped(v.why) +
-              "</td></tr>\n";
+  const std::vector<VerdictGroup> groups = verdict_groups(run.document);
+  if (groups.empty()) return {};
+  std::string out =
+      "<table class=\"verdicts\">\n<thead><tr><th scope=\"col\">paper\u2019s table</th><th "
+      "scope=\"col\">what</th><th scope=\"col\" class=\"paper\">paper</th><th scope=\"col\">ours</th><th "
+      "scope=\"col\">finding</th><th scope=\"col\">why</th></tr></thead>\n";
+  bool dissertation = false;
+  for (const VerdictGroup& group : groups) {
+    out += "<tbody>\n<tr class=\"group\"><th colspan=\"6\" scope=\"rowgroup\">" + escaped(group.title) +
+           ": " + std::to_string(group.verdicts.size()) + "</th></tr>\n";
+    for (const Verdict* v : group.verdicts) {
+      out += verdict_html(*v);
+      dissertation = dissertation || v->source.starts_with("D ");
     }
+    out += "</tbody>\n";
   }
-  if (rows.empty()) return {};
-  return "<table class=\"verdicts\">\n<thead><tr><th scope=\"col\">paper\u2019s table</th><th "
-         "scope=\"col\">what</th><th scope=\"col\" class=\"paper\">paper</th><th scope=\"col\">ours</th><th "
-         "scope=\"col\">finding</th><th scope=\"col\">why</th></tr></thead>\n<tbody>\n" +
-         rows + "</tbody></table>\n";
+  out += "</table>\n";
+  if (dissertation) {
+    out +=
+        "<p class=\"note sources\">D is the dissertation whose experiments these are; its figures are from "
+        "an Intel "
+        "Core i7-7700 with a GeForce GTX 1070.</p>\n";
+  }
+  return out;
 }
 
 /// What failed and why, one line a reason. `most`: cases named of each.
@@ -189,7 +205,7 @@ std::string summary_html(const RunReport& report) {
       compared = true;
       out += headline_html(report, run, runs[run]);
     } else if (report.runs.size() > 1) {
-      out += "<p class=\"headline\">" + escaped(run_name(report.runs[run])) + "</p>\n";
+      out += "<p class=\"headline\">" + escaped(run_name(report, run)) + "</p>\n";
     }
     out += failures_html(report.runs[run].document, 3) + verdicts_html(report.runs[run]);
     for (const DocumentSection& section : report.runs[run].document.sections)
@@ -233,9 +249,10 @@ std::string section_html(const ReportRun& from, const DocumentSection& section, 
   return out + "</section>\n";
 }
 
-std::string run_html(const ReportRun& from, std::size_t run, Warnings& warnings) {
+std::string run_html(const RunReport& report, std::size_t run, Warnings& warnings) {
+  const ReportRun& from = report.runs[run];
   std::string out = "<section class=\"run\" id=\"run" + std::to_string(run + 1) + "\">\n" +
-                    element("h2", run_name(from)) + facts_html(from.document) +
+                    element("h2", run_name(report, run)) + facts_html(from.document) +
                     failures_html(from.document, 100);
   for (const DocumentSection& section : from.document.sections)
     out += section_html(from, section, run, warnings);
@@ -245,7 +262,7 @@ std::string run_html(const ReportRun& from, std::size_t run, Warnings& warnings)
 std::string contents_html(const RunReport& report) {
   std::string out = "<nav aria-label=\"Contents\"><ul>\n<li><a href=\"#summary\">At a glance</a></li>\n";
   for (std::size_t run = 0; run < report.runs.size(); ++run) {
-    out += "<li><a href=\"#run" + std::to_string(run + 1) + "\">" + escaped(run_name(report.runs[run])) +
+    out += "<li><a href=\"#run" + std::to_string(run + 1) + "\">" + escaped(run_name(report, run)) +
            "</a></li>\n";
   }
   return out + "</ul></nav>\n";
@@ -263,7 +280,7 @@ std::string report_html(const RunReport& report, Warnings& warnings) {
       element("title", report.title) + "<style>\n" + std::string(report_style()) +
       "</style>\n</head>\n<body>\n" + "<header>\n" + element("h1", report.title) + contents_html(report) +
       "</header>\n<main>\n" + summary_html(report);
-  for (std::size_t run = 0; run < report.runs.size(); ++run) out += run_html(report.runs[run], run, warnings);
+  for (std::size_t run = 0; run < report.runs.size(); ++run) out += run_html(report, run, warnings);
   return out + "</main>\n<footer><p>Made by sceneplay report, scenegen " SCENEGEN_VERSION
                ".</p></footer>\n</body>\n</html>\n";
 }

@@ -22,8 +22,9 @@ struct RunReport {
   std::vector<ReportRun> runs;
 };
 
-/// The device's name when the run's facts say it, else the title of its document.
-[[nodiscard]] std::string run_name(const ReportRun& run);
+/// The device's name when the run's facts say one; the processor's when they say none; the title of its
+/// document when neither names it. Runs of one name say what they are of as well.
+[[nodiscard]] std::string run_name(const RunReport& report, std::size_t run);
 /// Name of an id of a run's document in the whole report: "run1-chart-queries". `kind`: section, table, chart
 /// or picture; ids are unique among those of one kind.
 [[nodiscard]] std::string anchor(std::size_t run, const std::string& kind, const std::string& id);
@@ -56,6 +57,13 @@ struct Tally {
 
 /// How a figure of ours stands beside the paper's.
 [[nodiscard]] Finding finding_of(double ours, double paper, Better better);
+/// The paper's tables and claims by how ours stand, in the order of the sections; groups that are empty are
+/// left out. What is behind comes first: a reader looks for it.
+struct VerdictGroup {
+  std::string title;  ///< "Behind the paper, or not as it says"
+  std::vector<const Verdict*> verdicts;
+};
+[[nodiscard]] std::vector<VerdictGroup> verdict_groups(const Document& document);
 /// "✓", "≈", "✗", "=", "≠".
 [[nodiscard]] std::string_view sign_of(Finding finding);
 

@@ -7,20 +7,20 @@ namespace {
 constexpr std::string_view kStyle = R"css(:root {
   color-scheme: light dark;
   --paper: #fff; --text: #1b1f24; --muted: #59616b; --line: #d9dde2; --soft: #f4f6f8; --link: #1d5fb0;
-  --better: #1a7a45; --worse: #b23b12; --level: #6a7078;
+  --better: #1a7a45; --worse: #b23b12; --level: #6a7078; --shade: #0004;
   --s0: #1f63b5; --s1: #c8590f; --s2: #16806a; --s3: #a5348f; --s4: #86690f; --s5: #5a4fcf; --s6: #4a7484; --s7: #8c4a4a;
 }
 @media (prefers-color-scheme: dark) {
   :root {
     --paper: #14171b; --text: #e4e7eb; --muted: #a0a8b2; --line: #363c44; --soft: #1d2126; --link: #7fb2f0;
-    --better: #5cc98a; --worse: #f08a5d; --level: #a0a8b2;
+    --better: #5cc98a; --worse: #f08a5d; --level: #a0a8b2; --shade: #000c;
     --s0: #6ea8f0; --s1: #f09a5a; --s2: #4fc3a8; --s3: #e080cc; --s4: #d0b050; --s5: #a79df7; --s6: #8fbccc; --s7: #d99090;
   }
 }
 * { box-sizing: border-box; }
 html { -webkit-text-size-adjust: 100%; text-size-adjust: 100%; }
 body {
-  margin: 0 auto; padding: 2.5rem 1.25rem 3rem; max-width: 62rem; background: var(--paper); color: var(--text);
+  margin: 0 auto; padding: 2.5rem 1.25rem 3rem; max-width: 70rem; background: var(--paper); color: var(--text);
   font: 1rem/1.55 system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", "Liberation Sans", Arial, sans-serif;
   overflow-wrap: break-word;
 }
@@ -66,7 +66,8 @@ h2 + .headline { margin-top: 0; }
 .verdicts { margin: 0 0 1.25rem; width: 100%; border: 1px solid var(--line); border-radius: 0.4rem; }
 .verdicts th, .verdicts td { padding: 0.35rem 0.6rem; position: static; }
 .verdicts tbody th { font-weight: 600; white-space: nowrap; } .verdicts .ours { font-weight: 600; }
-.verdicts td { overflow-wrap: anywhere; min-width: 4.5rem; } .verdicts td:nth-child(2) { min-width: 9.5rem; } .verdicts td:last-child { min-width: 14rem; }
+.verdicts td { overflow-wrap: anywhere; min-width: 6.5rem; } .verdicts td:nth-child(2) { min-width: 11rem; } .verdicts td:last-child { min-width: 16rem; }
+.verdicts .group th { background: var(--soft); padding-top: 0.6rem; font-size: 0.9375rem; }
 .verdicts .key { display: none; } .verdicts tr { break-inside: avoid; }
 
 .facts { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 18rem), 1fr)); gap: 0.35rem 1.5rem; margin: 0; font-size: 0.875rem; }
@@ -77,7 +78,15 @@ h2 + .headline { margin-top: 0; }
 
 figure { margin: 1.75rem 0 0; }
 figcaption { font-weight: 600; margin-bottom: 0.5rem; }
-.scroll { overflow: auto; max-height: 36rem; border: 1px solid var(--line); border-radius: 0.4rem; width: fit-content; max-width: 100%; }
+/* What is moved out of sight inside must not widen the page; a shade says that a table goes on. */
+.scroll {
+  position: relative; overflow: auto; max-height: 36rem; border: 1px solid var(--line); border-radius: 0.4rem; width: fit-content; max-width: 100%;
+  background:
+    linear-gradient(to right, var(--paper) 40%, transparent) left / 3rem 100% no-repeat local,
+    linear-gradient(to left, var(--paper) 40%, transparent) right / 3rem 100% no-repeat local,
+    linear-gradient(to right, var(--shade), transparent) left / 0.9rem 100% no-repeat scroll,
+    linear-gradient(to left, var(--shade), transparent) right / 0.9rem 100% no-repeat scroll;
+}
 .scroll:focus-visible { outline: 2px solid var(--link); outline-offset: 1px; }
 table { border-collapse: separate; border-spacing: 0; font-size: 0.875rem; line-height: 1.35; font-variant-numeric: tabular-nums lining-nums; }
 th, td { padding: 0.35rem 0.7rem; text-align: left; vertical-align: baseline; }
@@ -136,6 +145,7 @@ details .scroll { margin-top: 0.5rem; max-height: 24rem; }
   .verdicts tr { border: 1px solid var(--line); border-radius: 0.4rem; padding: 0.5rem 0.75rem; margin-bottom: 0.6rem; }
   .verdicts tbody th, .verdicts tbody td { border: 0; padding: 0.05rem 0; }
   .verdicts td.paper, .verdicts td.ours, .verdicts td.s { display: inline-block; margin-right: 1rem; }
+  .verdicts tr.group { border: 0; padding: 0; margin: 1.25rem 0 0.5rem; } .verdicts .group th { background: none; padding: 0; }
   .verdicts .key { display: inline; color: var(--muted); font-weight: 400; font-style: normal; }
 }
 @media print {
@@ -153,7 +163,7 @@ details .scroll { margin-top: 0.5rem; max-height: 24rem; }
   a { text-decoration: none; color: inherit; }
   h1, h2, h3, figcaption, .lead, .legend { break-after: avoid; }
   figure.chart, figure.picture, .glance, .headline, tr { break-inside: avoid; }
-  .scroll { overflow: visible; max-height: none; width: auto; border: none; }
+  .scroll { overflow: visible; max-height: none; width: auto; border: none; background: none; }
   thead { display: table-header-group; }
   thead th, tbody th { position: static; }
   table.wide { font-size: 7pt; } table.wide th, table.wide td { padding: 0.2rem 0.3rem; }

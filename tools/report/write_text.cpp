@@ -133,24 +133,26 @@ std::string failures_text(const Document& document, std::size_t most) {
 }
 
 std::string verdicts_text(const Document& document) {
-  std::string rows;
-  for (const DocumentSection& section : document.sections) {
-    for (const Verdict& v : section.verdicts)
-      rows +=
-          row_text({plain(v.source), plain(v.what), plain(v.paper), plain(v.ours),
-                    std::string(sign_of(v.finding)) + " " + std::string(word_of(v.finding)), plain(v.why)});
+  std::string out;
+  for (const VerdictGroup& group : verdict_groups(document)) {
+    out += "**" + plain(group.title) + ": " + std::to_string(group.verdicts.size()) + "**\n\n" +
+           row_text({"paper's table", "what", "paper", "ours", "finding", "why"}) +
+           rule_text({false, false, true, true, false, false});
+    for (const Verdict* v : group.verdicts)
+      out += row_text({plain(v->source), plain(v->what), plain(v->paper), plain(v->ours),
+                       std::string(sign_of(v->finding)) + " " + std::string(word_of(v->finding)),
+                       plain(v->why)});
+    out += "\n";
   }
-  if (rows.empty()) return {};
-  return row_text({"paper's table", "what", "paper", "ours", "finding", "why"}) +
-         rule_text({false, false, true, true, false, false}) + rows + "\n";
+  return out;
 }
 
 /// With the run's name above each where there are several.
 std::string verdicts_of_runs(const RunReport& report) {
   std::string out;
-  for (const ReportRun& run : report.runs) {
-    const std::string verdicts = verdicts_text(run.document);
-    if (!verdicts.empty() && report.runs.size() > 1) out += "**" + plain(run_name(run)) + "**\n\n";
+  for (std::size_t run = 0; run < report.runs.size(); ++run) {
+    const std::string verdicts = verdicts_text(report.runs[run].document);
+    if (!verdicts.empty() && report.runs.size() > 1) out += "### " + plain(run_name(report, run)) + "\n\n";
     out += verdicts;
   }
   return out;
@@ -164,8 +166,8 @@ std::string summary_text(const RunReport& report) {
                     "Figures of ours beside the paper's: \u2713 better, \u2248 level (within 2 %), "
                     "\u2717 worse.\n\n" +
                     row_text(heads) + rule_text(right);
-  for (const ReportRun& run : report.runs) {
-    for (const DocumentSection& section : run.document.sections) {
+  for (std::size_t run = 0; run < report.runs.size(); ++run) {
+    for (const DocumentSection& section : report.runs[run].document.sections) {
       const Tally t = tally(section);
       const auto count = [&](std::size_t n) { return t.count() == 0 ? "" : std::to_string(n); };
       const auto typical = t.typical();
@@ -177,14 +179,15 @@ std::string summary_text(const RunReport& report) {
                                                    (*typical >= 1 ? "better" : "worse")
                                              : "",
                                      section.paragraphs.empty() ? "" : plain(section.paragraphs.front())};
-      if (report.runs.size() > 1) cells.insert(cells.begin(), plain(run_name(run)));
+      if (report.runs.size() > 1) cells.insert(cells.begin(), plain(run_name(report, run)));
       out += row_text(cells);
     }
   }
   out += "\n";
-  for (const ReportRun& run : report.runs) {
-    const std::string failures = failures_text(run.document, 3);
-    out += failures.empty() || report.runs.size() == 1 ? failures : plain(run_name(run)) + ":\n\n" + failures;
+  for (std::size_t run = 0; run < report.runs.size(); ++run) {
+    const std::string failures = failures_text(report.runs[run].document, 3);
+    out += failures.empty() || report.runs.size() == 1 ? failures
+                                                       : plain(run_name(report, run)) + ":\n\n" + failures;
   }
   return out;
 }
@@ -235,8 +238,9 @@ std::string chart_csv(const Chart& chart) {
 
 std::string report_markdown(const RunReport& report, const std::string& folder) {
   std::string out = "# " + plain(report.title) + "\n\n" + summary_text(report);
-  for (const ReportRun& run : report.runs) {
-    out += "## " + plain(run_name(run)) + "\n\n";
+  for (std::size_t number = 0; number < report.runs.size(); ++number) {
+    const ReportRun& run = report.runs[number];
+    out += "## " + plain(run_name(report, number)) + "\n\n";
     for (const auto& [name, value] : run.document.facts)
       out += "- " + plain(name) + ": " + plain(value) + "\n";
     if (!run.document.facts.empty()) out += "\n";
