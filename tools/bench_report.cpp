@@ -288,7 +288,8 @@ std::string behind(const std::vector<BenchView>& views) {
     const std::string high = factor_text(range.second);
     const bool first = out.empty();
     out.append(first ? " Frames of " : ", of ").append(name).append(first ? " take " : " ");
-    out.append(low == high ? low : low + " to " + high);
+    out += low;
+    if (high != low) out.append(" to ").append(high);
     if (first) out += " times as long as those of the fastest";
   }
   return out.empty() ? out : out + ".";
@@ -357,8 +358,12 @@ std::vector<std::string> machine_lines(std::span<const ordered_json> results) {
     }
   }
   std::vector<std::string> out;
-  for (const auto& [line, numbers] : lines)
-    out.push_back(results.size() > 1 ? "Results " + numbers + ": " + line : line);
+  out.reserve(lines.size());
+  for (const auto& [line, numbers] : lines) {
+    std::string& own = out.emplace_back(results.size() > 1 ? "Results " : "");
+    if (results.size() > 1) own.append(numbers).append(": ");
+    own += line;
+  }
   return out;
 }
 

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "render/draw_optimize.h"
 #include "render/gpu_scene.h"
+#include "scene/parallel.h"
 #include "tools/output.h"
 
 namespace scenegen::tools {
@@ -16,7 +16,7 @@ using Usage = vk::BufferUsageFlagBits;
 
 namespace {
 
-constexpr std::uint64_t kPiece = 64ULL << 20;  // of what is uploaded at once
+constexpr std::uint64_t kUpload = 64ULL << 20;  // of what is uploaded at once
 
 /// The scene's materials, and an object of one small triangle in each: records, textures and states to draw
 /// with.
@@ -44,34 +44,6 @@ glm::i16vec4 turned(const glm::i16vec4& v, const glm::mat3& rotation) {
           static_cast<std::int16_t>(std::lround(n.z)), v.w};
 }
 
-/// Fills device memory through a mapped buffer, a piece at a time.
-class Uploading {
- public:
-  Uploading(DrawStage& stage, const render::vkr::Buffer& from, const render::vkr::Buffer& to)
-      : stage_(stage), from_(from), to_(to) {}
-  template <class T>
-  void add(const T& value) {
-    if (used_ + sizeof(T) > from_.bytes) flush();
-    std::memcpy(from_.mapped() + used_, &value, sizeof(T));
-    used_ += sizeof(T);
-  }
-  void flush() {
-    if (used_ == 0) return;
-    render::vkr::run_once(stage_.device(), [&](const vk::raii::CommandBuffer& c) {
-      c.copyBuffer(*from_.buffer, *to_.buffer, vk::BufferCopy(0, done_, used_));
-      render::vkr::Barriers().buffer(*to_.buffer, Use::transfer_write, Use::shader_data).flush(c);
-    });
-    done_ += used_;
-    used_ = 0;
-  }
-
- private:
-  DrawStage& stage_;
-  const render::vkr::Buffer& from_;
-  const render::vkr::Buffer& to_;
-  std::uint64_t used_ = 0, done_ = 0;
-};
-
 }  // namespace
 
 Result<std::unique_ptr<MergedRenderer>> MergedRenderer::make(const ExperimentContext& context,
@@ -85,12 +57,16 @@ Result<std::unique_ptr<MergedRenderer>> MergedRenderer::make(const ExperimentCon
     out->slot_of_material_.resize(scene.materials.size() + 1);
     for (std::uint32_t slot = 0; slot < s.scene().slot_count(); ++slot)
       out->slot_of_material_[s.scene().object(slot).value] = slot;
+    std::uint64_t largest = kUpload;
     for (const Geometry& g : scene.geometries) {
-      out->geometries_.push_back(render::make_draw_geometry(g));
-      render::share_vertices(out->geometries_.back(), render::TriangleOrder::free);  // as the renderer does
+      render::DrawGeometry& own = out->geometries_.emplace_back(render::make_draw_geometry(g));
+      render::share_vertices(own, render::TriangleOrder::free);  // as the renderer does
+      largest = std::max({largest, own.positions_m.size() * sizeof(glm::vec3),
+                          own.attributes.size() * sizeof(render::VertexAttributes),
+                          own.indices.size() * sizeof(std::uint32_t)});
     }
     out->upload_ =
-        s.memory().buffer(kPiece, Usage::eTransferSrc, MemoryUse::upload, render::MemoryKind::staging);
+        s.memory().buffer(largest, Usage::eTransferSrc, MemoryUse::upload, render::MemoryKind::staging);
     out->pool_ = vk::raii::CommandPool(
         s.device().device, {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, s.device().queue_family});
     out->commands_ = std::move(
@@ -110,7 +86,7 @@ void MergedRenderer::gather(const timeline::Player& player) {
     const glm::mat4 world_from_object = player.world_from_object(id);
     for (const Primitive& p : scene_.meshes[mesh.value].primitives) {
       const std::size_t material = p.material.valid() ? p.material.value : scene_.materials.size();
-      pieces_.push_back({slot_of_material_[material], p.geometry.value, world_from_object});
+      pieces_.push_back({slot_of_material_[material], p.geometry.value, 0, 0, world_from_object});
     }
   }
   // In the order of states, blended ones last.
@@ -122,8 +98,10 @@ void MergedRenderer::lay_out() {
   draws_.clear();
   vertices_ = 0;
   indices_count_ = 0;
-  for (const Piece& piece : pieces_) {
+  for (Piece& piece : pieces_) {
     const render::DrawGeometry& g = geometries_[piece.geometry];
+    piece.first_vertex = static_cast<std::uint32_t>(vertices_);
+    piece.first_index = static_cast<std::uint32_t>(indices_count_);
     if (draws_.empty() || draws_.back().slot != piece.slot)
       draws_.push_back({piece.slot, static_cast<std::uint32_t>(indices_count_), 0});
     draws_.back().index_count += static_cast<std::uint32_t>(g.indices.size());
@@ -147,34 +125,64 @@ void MergedRenderer::reserve() {
   grown(indices_, indices_count_ * sizeof(std::uint32_t), Usage::eIndexBuffer);
 }
 
-void MergedRenderer::write_vertices() {
-  Uploading positions(*stage_, upload_, positions_);
-  for (const Piece& piece : pieces_) {
-    for (const glm::vec3& p : geometries_[piece.geometry].positions_m)
-      positions.add(glm::vec3(piece.world_from_object * glm::vec4(p, 1.0F)));
-  }
-  positions.flush();
-  Uploading attributes(*stage_, upload_, attributes_);
-  for (const Piece& piece : pieces_) {
-    const glm::mat3 rotation = glm::transpose(glm::inverse(glm::mat3(piece.world_from_object)));
-    for (render::VertexAttributes a : geometries_[piece.geometry].attributes) {
-      a.normal = turned(a.normal, rotation);
-      a.tangent = turned(a.tangent, glm::mat3(piece.world_from_object));
-      attributes.add(a);
+/// Fills `to` through the mapped upload buffer, as many whole pieces at a time as fit, by all processors: a
+/// renderer that optimizes scenes would. `count`: of all elements; `first`: a piece's; write(piece, T* of its
+/// first).
+template <class T, class Write>
+void MergedRenderer::upload(const render::vkr::Buffer& to, std::uint32_t Piece::*first, std::uint64_t count,
+                            const Write& write) {
+  const auto begin_of = [&](std::size_t piece) -> std::uint64_t {
+    return piece < pieces_.size() ? pieces_[piece].*first : count;
+  };
+  const std::uint64_t room = upload_.bytes / sizeof(T);  // at least for the largest geometry
+  auto* const mapped = reinterpret_cast<T*>(upload_.mapped());
+  for (std::size_t from = 0; from < pieces_.size();) {
+    const std::uint64_t start = begin_of(from);
+    std::size_t end = from;
+    while (end < pieces_.size() && begin_of(end + 1) - start <= room) ++end;
+    const auto bound = [&](std::uint64_t element) {
+      return std::lower_bound(pieces_.begin() + static_cast<std::ptrdiff_t>(from),
+                              pieces_.begin() + static_cast<std::ptrdiff_t>(end), element,
+                              [&](const Piece& piece, std::uint64_t at) { return piece.*first < at; });
+    };
+    const std::uint64_t elements = begin_of(end) - start;
+    parallel_for(elements, 0, [&](std::size_t low, std::size_t high) {
+      const auto last = bound(start + high);
+      for (auto piece = bound(start + low); piece != last; ++piece)
+        write(*piece, mapped + (*piece.*first - start));
+    });
+    if (elements > 0) {
+      render::vkr::run_once(stage_->device(), [&](const vk::raii::CommandBuffer& c) {
+        c.copyBuffer(*upload_.buffer, *to.buffer, vk::BufferCopy(0, start * sizeof(T), elements * sizeof(T)));
+        render::vkr::Barriers().buffer(*to.buffer, Use::transfer_write, Use::shader_data).flush(c);
+      });
     }
+    from = end;
   }
-  attributes.flush();
+}
+
+void MergedRenderer::write_vertices() {
+  upload<glm::vec3>(positions_, &Piece::first_vertex, vertices_, [&](const Piece& piece, glm::vec3* out) {
+    for (const glm::vec3& p : geometries_[piece.geometry].positions_m)
+      *out++ = glm::vec3(piece.world_from_object * glm::vec4(p, 1.0F));
+  });
+  upload<render::VertexAttributes>(
+      attributes_, &Piece::first_vertex, vertices_, [&](const Piece& piece, render::VertexAttributes* out) {
+        const glm::mat3 rotation = glm::transpose(glm::inverse(glm::mat3(piece.world_from_object)));
+        for (render::VertexAttributes a : geometries_[piece.geometry].attributes) {
+          a.normal = turned(a.normal, rotation);
+          a.tangent = turned(a.tangent, glm::mat3(piece.world_from_object));
+          *out++ = a;
+        }
+      });
 }
 
 void MergedRenderer::write_indices() {
-  Uploading indices(*stage_, upload_, indices_);
-  std::uint32_t first = 0;
-  for (const Piece& piece : pieces_) {
-    const render::DrawGeometry& g = geometries_[piece.geometry];
-    for (const std::uint32_t i : g.indices) indices.add(first + i);
-    first += static_cast<std::uint32_t>(g.positions_m.size());
-  }
-  indices.flush();
+  upload<std::uint32_t>(indices_, &Piece::first_index, indices_count_,
+                        [&](const Piece& piece, std::uint32_t* out) {
+                          for (const std::uint32_t i : geometries_[piece.geometry].indices)
+                            *out++ = piece.first_vertex + i;
+                        });
 }
 
 void MergedRenderer::record() {

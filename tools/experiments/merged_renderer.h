@@ -40,6 +40,7 @@ class MergedRenderer {
   struct Piece {             // a primitive of a visible object
     std::uint32_t slot = 0;  // of the stage: what it is drawn with
     std::uint32_t geometry = 0;
+    std::uint32_t first_vertex = 0, first_index = 0;
     glm::mat4 world_from_object{1.0F};
   };
   struct Draw {
@@ -51,6 +52,9 @@ class MergedRenderer {
   void reserve();
   void write_vertices();
   void write_indices();
+  template <class T, class Write>
+  void upload(const render::vkr::Buffer& to, std::uint32_t Piece::*first, std::uint64_t count,
+              const Write& write);
   void record();
 
   const Scene& scene_;
