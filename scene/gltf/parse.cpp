@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <new>
 
 #include "scene/limits.h"
 
@@ -115,6 +116,7 @@ void parse_document(std::string_view text, Document& out) {
   const simdjson::padded_string_view padded(text.data(), text.size(),
                                             text.size() + simdjson::SIMDJSON_PADDING);
   if (const auto code = parser.iterate(padded).get(document); code != simdjson::SUCCESS) {
+    if (code == simdjson::MEMALLOC) throw std::bad_alloc();  // the document may be a good one
     reject(root, std::string("not a JSON document: ") + simdjson::error_message(code));
   }
   simdjson::ondemand::object members;

@@ -1,6 +1,7 @@
 #include "scene/gltf/patch_text.h"
 
 #include <algorithm>
+#include <new>
 
 #include "scene/gltf/parse.h"
 #include "scene/gltf/write_info.h"
@@ -22,8 +23,10 @@ SourceText::SourceText(const std::string& json) {
   }
   const simdjson::padded_string_view padded(text_.data(), text_.size(),
                                             text_.size() + simdjson::SIMDJSON_PADDING);
-  if (const auto code = parser_.iterate(padded).get(document_); code != simdjson::SUCCESS)
+  if (const auto code = parser_.iterate(padded).get(document_); code != simdjson::SUCCESS) {
+    if (code == simdjson::MEMALLOC) throw std::bad_alloc();  // the document may be a good one
     reject(Place(), std::string("not a JSON document: ") + simdjson::error_message(code));
+  }
 }
 
 simdjson::ondemand::object SourceText::root() {

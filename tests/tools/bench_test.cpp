@@ -280,6 +280,50 @@ TEST_CASE("bench: what fails is named, and the rest is measured") {
   CHECK(line_count(read_file(out + "/bench.csv")) == 3);
 }
 
+#if !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)  // their shadow memory is larger than any limit
+TEST_CASE("bench: a scene that does not fit is named, the rest is measured, and --resume takes it up again") {
+  const TemporaryFolder folder;
+  const std::string out = folder.file("out");
+  // 3.5 GB of positions, of which the disk holds nothing but the beginning.
+  constexpr std::uint32_t kBytes = 3'500'000'000;
+  std::string json = R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":3500000000}]})";
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  std::string head = "glTF";
+  const auto add = [&head](std::uint32_t word) {
+    head.append(reinterpret_cast<const char*>(&word), sizeof(word));
+  };
+  for (const std::uint32_t word : {2U, static_cast<std::uint32_t>(28 + json.size() + kBytes),
+                                   static_cast<std::uint32_t>(json.size()), 0x4E4F534AU})
+    add(word);
+  head += json;
+  add(kBytes);
+  add(0x004E4942);
+  const std::string large = folder.file("large.glb");
+  test::write_file(large, head);
+  std::filesystem::resize_file(large, head.size() + kBytes);
+  const std::string call =
+      "bench " + large + " " + wall_file(folder) + " -o " + out +
+      " --frames 3 --repeat 2 --size 32x18 --shadows off --strategy inline,brute --quiet";
+  const ProcessResult result = play(call, {.most_memory_bytes = 3'000'000'000});
+  CHECK(result.code == 1);
+  CHECK(result.err == "error: " + large + ": not enough memory for what the file holds\n");
+  const nlohmann::json cases = results(out)["cases"];
+  REQUIRE(cases.size() == 4);
+  for (std::size_t i = 0; i < 4; ++i) CHECK(cases[i].contains(i < 2 ? "error" : "frameMs"));
+  const auto before = runs_in(out);
+  REQUIRE(before.size() == 4);
+  wall_file(folder, "large.glb");  // now it fits
+  const ProcessResult resumed = play(call + " --resume");
+  INFO(resumed.err);
+  CHECK(resumed.code == 0);
+  const auto after = runs_in(out);
+  CHECK(after.size() == 8);
+  for (const auto& [name, bytes] : before) CHECK(after.at(name) == bytes);
+  for (const auto& c : results(out)["cases"]) CHECK(c.contains("frameMs"));
+}
+#endif
+
 TEST_CASE("bench: several devices, one of them missing") {
   const TemporaryFolder folder;
   const std::string out = folder.file("out");
