@@ -25,6 +25,7 @@
 #include "render/calibration/calibration_file.h"
 #include "render/renderer.h"
 #include "scene/scene.h"
+#include "tests/support/facts_json.h"
 #include "tools/experiments/accuracy.h"
 #include "tools/output.h"
 
@@ -80,41 +81,6 @@ class StageSamples {
  private:
   std::vector<std::vector<double>> samples_;
 };
-
-nlohmann::ordered_json json_of(const render::model::Load& l) {
-  return {{"draws", l.draws},
-          {"vertices", l.vertices},
-          {"fragments", l.fragments},
-          {"triangles", l.triangles},
-          {"texturedShare", l.textured_share},
-          {"screenShare", l.screen_share}};
-}
-
-nlohmann::ordered_json json_of(const render::model::FrameFacts& f) {
-  return {{"visibleSlots", f.visible_slots},
-          {"changed", f.changed},
-          {"screenPixels", f.screen_pixels},
-          {"blended", json_of(f.blended)},
-          {"visible", json_of(f.visible)},
-          {"inFrustum", json_of(f.in_frustum)},
-          {"height", f.height},
-          {"chunksRefreshed", f.chunks_refreshed},
-          {"slotsRefreshed", f.slots_refreshed},
-          {"nodesVisited", f.nodes_visited},
-          {"boxesTested", f.boxes_tested},
-          {"chunks", f.chunks},
-          {"inChunks", json_of(f.in_chunks)},
-          {"chunksRerecorded", f.chunks_rerecorded},
-          {"drawsRerecorded", f.draws_rerecorded},
-          {"asked", f.asked},
-          {"askedFragments", f.asked_fragments},
-          {"chunksHidden", f.chunks_hidden},
-          {"hidden", json_of(f.hidden)},
-          {"allAskedFragments", f.all_asked_fragments},
-          {"allChunksHidden", f.all_chunks_hidden},
-          {"allHidden", json_of(f.all_hidden)},
-          {"slotsHidden", json_of(f.slots_hidden)}};
-}
 
 nlohmann::ordered_json json_of(const Prediction& p) {
   return {{"update", p.update_s * 1e3},
@@ -175,7 +141,7 @@ Result<Times> measure(const Scene& scene, Method method, const render::RendererO
   out.dump["counts"] = {{"draws", r.draws},     {"secondaries", r.secondaries},
                         {"queries", r.queries}, {"hidden", r.believed_hidden},
                         {"drawn", r.drawn},     {"triangles", r.triangles}};
-  out.dump["facts"] = json_of(r.facts);
+  out.dump["facts"] = test::facts_json(r.facts);
   out.dump["predicted"] = json_of(out.predicted);
   return out;
 }

@@ -12,6 +12,7 @@ for bench in build/release/bin/bench_*; do
   name=$(basename "$bench")
   printf '\n== %s\n' "$name"
   case $name in
+    bench_accuracy | bench_bound | bench_device_choice) echo "needs a calibration or a scene: see the head of its source" ;;
     bench_programs) "$bench" build/release/bin "$work" --ten-million ;;
     *) (cd "$work" && "$OLDPWD/$bench") ;;
   esac
