@@ -27,7 +27,7 @@ struct PlanCounters : StageTimes {
   std::uint64_t recorded_draws = 0;     ///< slots that those draw
   std::uint64_t indirect_commands = 0;  ///< indirect draw commands in the place of secondaries
   std::uint64_t queries = 0;            ///< occlusion queries sent, in all passes
-  std::uint64_t believed_hidden = 0;    ///< of them about what was believed hidden
+  std::uint64_t believed_hidden = 0;    ///< parts believed hidden that they are about; some share a query
   std::uint64_t answers = 0;            ///< results of earlier frames, read in this one
   std::uint64_t found_hidden = 0;       ///< of them those that say hidden
   std::uint64_t list_bytes = 0;         ///< lists of instances, part of the bytes uploaded

@@ -26,6 +26,11 @@ struct ScatterConstants {
 
 }  // namespace
 
+std::size_t query_count(std::span<const Asked> asked) {
+  return static_cast<std::size_t>(
+      std::count_if(asked.begin(), asked.end(), [](const Asked& a) { return !a.with_previous; }));
+}
+
 Occlusion::Occlusion(const vkr::Device& device, Predicates predicates) : device_(device), form_(predicates) {
   if (form_ != Predicates::none) make_scatter();
 }
@@ -105,9 +110,10 @@ void Occlusion::begin_frame(const PassContext& context, std::span<const Asked> a
                             std::span<const Governed> governed) {
   Place& p = place(context);
   p.asked.assign(asked.begin(), asked.end());
+  p.queries = static_cast<std::uint32_t>(query_count(asked));
   p.governed_count = static_cast<std::uint32_t>(governed.size());
   const vk::raii::CommandBuffer& commands = context.frame.commands;
-  if (!p.asked.empty()) commands.resetQueryPool(*p.pool, 0, static_cast<std::uint32_t>(p.asked.size()));
+  if (p.queries > 0) commands.resetQueryPool(*p.pool, 0, p.queries);
   if (form_ == Predicates::none) return;
   std::copy(governed.begin(), governed.end(), reinterpret_cast<Governed*>(p.governed.mapped()));
   if (form_ == Predicates::counts && !std::exchange(fresh_, false)) return;
@@ -124,13 +130,14 @@ void Occlusion::record_boxes(const vk::raii::CommandBuffer& commands, const Pass
   context.gpu.bind_frame_set(commands, context.pipelines.box_layout());
   commands.setCullMode(vk::CullModeFlagBits::eNone);
   commands.setFrontFace(vk::FrontFace::eCounterClockwise);
-  for (std::uint32_t i = 0; i < p.asked.size(); ++i) {
+  std::uint32_t query = 0;
+  for (std::size_t i = 0; i < p.asked.size(); ++i) {
     const std::array corners{glm::vec4(p.asked[i].box_m.lo, 1.0F), glm::vec4(p.asked[i].box_m.hi, 1.0F)};
     commands.pushConstants<glm::vec4>(context.pipelines.box_layout(), vk::ShaderStageFlagBits::eVertex, 0,
                                       corners);
-    commands.beginQuery(*p.pool, i, {});
+    if (!p.asked[i].with_previous) commands.beginQuery(*p.pool, query, {});
     commands.draw(36, 1, 0, 0);
-    commands.endQuery(*p.pool, i);
+    if (i + 1 == p.asked.size() || !p.asked[i + 1].with_previous) commands.endQuery(*p.pool, query++);
   }
 }
 
@@ -151,10 +158,9 @@ vk::CommandBuffer Occlusion::boxes(const PassRecording& pass) {
 void Occlusion::set_predicates(const PassContext& context) {
   const Place& p = place(context);
   if (p.governed_count == 0) return;
-  const auto asked = static_cast<std::uint32_t>(p.asked.size());
   const vk::raii::CommandBuffer& commands = context.frame.commands;
   vkr::Barriers& barriers = context.barriers;
-  commands.copyQueryPoolResults(*p.pool, 0, asked, *p.results.buffer, 0, sizeof(std::uint32_t),
+  commands.copyQueryPoolResults(*p.pool, 0, p.queries, *p.results.buffer, 0, sizeof(std::uint32_t),
                                 vk::QueryResultFlagBits::eWait);
   barriers.buffer(*p.results.buffer, Use::transfer_write, Use::compute_read)
       .buffer(*predicates_.buffer, read(), Use::compute_write)
@@ -173,10 +179,14 @@ Occlusion::Answers Occlusion::take_answers(const PassContext& context) {
   p.samples.resize(p.asked.size());
   const vk::Result result =
       (*device_.device)
-          .getQueryPoolResults(*p.pool, 0, static_cast<std::uint32_t>(p.samples.size()),
-                               p.samples.size() * sizeof(std::uint32_t), p.samples.data(),
+          .getQueryPoolResults(*p.pool, 0, p.queries, p.queries * sizeof(std::uint32_t), p.samples.data(),
                                sizeof(std::uint32_t), {}, *device_.device.getDispatcher());
   if (result != vk::Result::eSuccess) return {};
+  std::uint32_t query = p.queries;  // from the last on: to each of those that share it
+  for (std::size_t i = p.asked.size(); i-- > 0;) {
+    p.samples[i] = p.samples[query - 1];
+    if (!p.asked[i].with_previous) --query;
+  }
   return {p.asked, p.samples};
 }
 

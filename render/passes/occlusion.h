@@ -19,11 +19,16 @@ struct Asked {
   std::uint64_t revision = 0;
   bool believed_hidden = false;
   Box box_m;  ///< already grown
+  /// Shares the query of the one before: its answer is about all of their boxes.
+  bool with_previous = false;
 };
+
+/// How many queries they take.
+[[nodiscard]] std::size_t query_count(std::span<const Asked> asked);
 
 /// A chunk whose predicate is the result of a query; the query's box bounds all that is drawn of the chunk.
 struct Governed {
-  std::uint32_t query = 0;  ///< index of what is asked in this frame
+  std::uint32_t query = 0;  ///< index of this frame's queries
   std::uint32_t chunk = 0;
 };
 
@@ -48,7 +53,8 @@ class Occlusion {
  public:
   Occlusion(const vkr::Device& device, Predicates predicates);
 
-  /// Makes room for `asked` and chunk numbers below `chunks`. May throw for want of memory, records nothing.
+  /// Makes room for so much `asked`, and chunk numbers below `chunks`. May throw for want of memory, records
+  /// nothing.
   void reserve(const PassContext& context, std::size_t asked, std::size_t chunks);
   /// Null without predicates. Another one after reserve() grew it.
   [[nodiscard]] vk::Buffer predicates() const { return *predicates_.buffer; }
@@ -63,8 +69,9 @@ class Occlusion {
   /// Between the parts of a pass: this frame's results become the predicates of the governed chunks.
   void set_predicates(const PassContext& context);
 
-  /// What was asked in the frame that used this one's place before, and its results (0: hidden). Empty when
-  /// there was none. To be called before begin_frame(); the device is done with that frame.
+  /// What was asked in the frame that used this one's place before, and the results of its queries (0:
+  /// hidden), to each that shares one. Empty when there was none. To be called before begin_frame(); the
+  /// device is done with that frame.
   struct Answers {
     std::span<const Asked> asked;
     std::span<const std::uint32_t> samples;
@@ -81,6 +88,7 @@ class Occlusion {
     vkr::Buffer results;  // of each query
     vk::DescriptorSet set;
     std::vector<Asked> asked;
+    std::uint32_t queries = 0;
     std::uint32_t governed_count = 0;
     std::vector<std::uint32_t> samples;
   };

@@ -11,7 +11,8 @@ constexpr double kNewest = 0.1;
 class Queries final : public QueryOctree {
  public:
   explicit Queries(const StrategyContext& context) : QueryOctree(context) {
-    const QueryChooser::Settings settings{exact(), indirect(), context.frames_in_flight > 1};
+    const QueryChooser::Settings settings{exact(), indirect(), context.frames_in_flight > 1,
+                                          context.frames_in_flight};
     for (std::size_t kind = 0; kind < kKinds; ++kind) choosers_.emplace_back(settings);
   }
 

@@ -52,9 +52,9 @@ class QueriesAll final : public QueryOctree {
       }
       const Belief& belief = beliefs_[kind][number];
       const bool hidden = belief.hidden && belief.revision == chunk.revision;
-      if (hidden) plan.governed.push_back({static_cast<std::uint32_t>(plan.asked.size()), number});
+      const std::uint32_t query = plan.ask({number, chunk.revision, hidden, box});
+      if (hidden) plan.governed.push_back({query, number});
       (hidden ? plan.second : plan.first).push_back(number);
-      plan.asked.push_back({number, chunk.revision, hidden, box});
     }
   }
 

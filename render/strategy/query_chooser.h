@@ -22,15 +22,21 @@ namespace scenegen::render {
 /// wait that doubles each time, spread over frames; everything depends on the answers and the frames' count
 /// alone.
 ///
+/// Parts that stay hidden share queries, several boxes to one (the multiqueries of CHC++, Mattausch, Bittner
+/// and Wimmer 2008). Its answer is about all of them: when one comes into view all are drawn, and each is
+/// asked by itself for a while. So as many share one as make what is drawn for nothing then, by how often
+/// parts that stayed hidden came into view, cost what a query does.
+///
 /// Three phases. *Gathering*: heavy parts (3.5) that were never asked are, largest first, some in each frame;
 /// everything is drawn. Then hidden(x) is fitted and x* asked for; if that is 0, *resting*: nothing is asked
 /// until the view has changed much or some time has passed. Else *asking*, fitted anew in each frame.
 class QueryChooser {
  public:
   struct Settings {
-    bool exact = true;         ///< what is believed hidden is sent all the same, under a predicate
-    bool indirect = true;      ///< chunks are indirect draws
-    bool side_by_side = true;  ///< processor and device work at once
+    bool exact = true;              ///< what is believed hidden is sent all the same, under a predicate
+    bool indirect = true;           ///< chunks are indirect draws
+    bool side_by_side = true;       ///< processor and device work at once
+    std::uint32_t late_frames = 2;  ///< after which answers come
   };
   /// A frame; `visits` and `chunks` are what Octree::cull() found.
   struct Frame {
@@ -61,7 +67,7 @@ class QueryChooser {
   /// Host memory held.
   [[nodiscard]] std::uint64_t memory_bytes() const {
     return held_bytes(nodes_, chunks_, seconds_, draws_, seconds_of_chunk_, below_) +
-           held_bytes(hidden_, unknown_, joined_, again_, query_of_, window_, points_, curve_);
+           held_bytes(hidden_, unknown_, joined_, again_, batches_, query_of_, window_, points_, curve_);
   }
 
  private:
@@ -74,6 +80,7 @@ class QueryChooser {
     std::uint32_t wait = 0;  // frames
     std::uint32_t age = 0;   // epoch of the verdict
     std::uint32_t seen = 0;  // last frame in the frustum
+    std::uint32_t kept = 0;  // answers in a row that it is hidden
     Verdict verdict = Verdict::unknown;
     // When it was asked:
     float seconds = 0, draws = 0, chunks = 0;  // that hiding it saves
@@ -85,22 +92,30 @@ class QueryChooser {
     std::uint32_t level = 0;
     std::uint32_t rank = 0;  // order of the walk
     double seconds = 0;
-    Box box_m;  // grown
+    Box box_m;            // grown
+    bool shares = false;  // may share a query
+    double doubt = 1;     // that it is hidden still
+  };
+  /// Of hidden_, from `first` on: they share a query.
+  struct Batch {
+    std::uint32_t first = 0, count = 0;
+    double seconds = 0, doubt = 0;
   };
   /// What a walk finds of everything below a visit.
   struct Below {
     Box box_m;
-    bool hidden = true;    // every part is
+    bool hidden = true;    // every part is, as far as it would be asked
     bool known = false;    // some part has a verdict
     bool visible = false;  // some part was visible
   };
-  /// Sums over parts asked.
+  /// Sums over queries.
   struct Sum {
     double queries = 0, chunks = 0, draws = 0, seconds = 0;
   };
 
   [[nodiscard]] Part& part_of(std::uint32_t key);
   Part& visit_part(std::uint32_t key, std::uint32_t owner, std::uint64_t revision);
+  void learn_part(const Asked& asked, bool hidden, bool alone);
   void measure(const Frame& frame);
   void summarize(const Frame& frame);
   void collect(const Frame& frame, std::uint32_t visit);
@@ -111,12 +126,15 @@ class QueryChooser {
   [[nodiscard]] double seconds_of(const Frame& frame, const Octree::Content& content) const;
   [[nodiscard]] double secondary_s(const Frame& frame, double draws) const;
   [[nodiscard]] model::QueryProblem problem(const Frame& frame) const;
+  [[nodiscard]] static double doubt(const Part& part);
+  [[nodiscard]] double risk() const;
+  void share_queries(const Frame& frame);
   [[nodiscard]] std::size_t decide(const Frame& frame);
   void begin_gathering();
   void begin_resting();
   void gather(const Frame& frame, QueryPlan& plan);
   void ask_best(const Frame& frame, QueryPlan& plan);
-  void ask(const Candidate& candidate, bool hidden, QueryPlan& plan);
+  void ask(const Candidate& candidate, bool hidden, bool with_previous, QueryPlan& plan);
   void ask_some(std::vector<Candidate>& candidates, std::size_t most, QueryPlan& plan);
   void observe(const Sum& sum);
 
@@ -133,6 +151,7 @@ class QueryChooser {
   std::vector<float> seconds_of_chunk_;  // by number, from some frames ago
   std::vector<Below> below_;             // by visit
   std::vector<Candidate> hidden_, unknown_, joined_, again_;
+  std::vector<Batch> batches_;           // of hidden_
   std::vector<std::uint32_t> query_of_;  // by index of the frame's chunks
 
   // Statistics.
@@ -140,8 +159,9 @@ class QueryChooser {
   std::vector<Sum> window_;  // a ring
   std::size_t window_at_ = 0;
   std::vector<model::Observation> points_;  // scratch
-  std::vector<Sum> curve_;                  // of hidden_, sorted: the first i of them
+  std::vector<Sum> curve_;                  // of batches_, sorted: the first i of them
   double kept_share_ = 1;                   // of what was believed hidden, found so again
+  double doubted_ = 0, revealed_ = 0;       // parts that stayed hidden, queries that found them visible
   double best_ = 0;
   std::uint32_t last_asked_ = 0, useless_ = 0, wake_ = 0, rest_ = 0;
   double seconds_at_rest_ = 0;

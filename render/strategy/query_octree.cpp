@@ -38,7 +38,7 @@ void QueryOctree::draw_chunks(PassRecording& pass) {
     choose(kind, QueryBoxes(view(), {pass.target().extent.width, pass.target().extent.height}), plan);
     occlusion.reserve(context, plan.asked.size(), tree().chunk_numbers());
   }
-  counters_.queries += plan.asked.size();
+  counters_.queries += plan.queries;
   for (const Asked& asked : plan.asked) counters_.believed_hidden += asked.believed_hidden ? 1 : 0;
   if (!exact_ && kind == color) {
     for (const std::uint32_t chunk : plan.second) counters_.drawn -= tree().chunk(chunk).slots.size();
@@ -65,8 +65,9 @@ void QueryOctree::draw_chunks(PassRecording& pass) {
 void QueryOctree::receive(Kind kind, const PassContext& context) {
   const StageTimer timer(counters_.receive_ms);
   const Occlusion::Answers answers = occlusion_[kind]->take_answers(context);
-  counters_.answers += answers.asked.size();
+  counters_.answers += query_count(answers.asked);
   for (std::size_t i = 0; i < answers.asked.size(); ++i) {
+    if (answers.asked[i].with_previous) continue;
     const bool hidden = answers.samples[i] == 0;
     counters_.found_hidden += hidden ? 1 : 0;
     counters_.reveals += !hidden && answers.asked[i].believed_hidden ? 1 : 0;
@@ -93,7 +94,7 @@ model::FrameFacts QueryOctree::facts() const {
   if (!facts.exact_octree) return facts;  // it gave up
   const QueryPlan& plan = plans_[main_kind()];
   const ScreenArea screen(view(), context_.size);
-  facts.asked = static_cast<double>(plan.asked.size());
+  facts.asked = plan.queries;
   for (const Asked& asked : plan.asked) facts.asked_fragments += screen.fragments(asked.box_m);
   facts.chunks_hidden = static_cast<double>(plan.second.size());
   facts.hidden = load_of_chunks(scene_, tree(), plan.second, screen);

@@ -20,6 +20,13 @@ struct QueryPlan {
   std::vector<std::uint32_t> second;  ///< chunks believed hidden, each governed by one of `asked`
   std::vector<Asked> asked;
   std::vector<Governed> governed;  ///< as `second`, with the query
+  std::uint32_t queries = 0;       ///< that `asked` takes
+  /// Index of its query.
+  std::uint32_t ask(const Asked& what) {
+    asked.push_back(what);
+    if (!what.with_previous) ++queries;
+    return queries - 1;
+  }
   /// Empties it, with room for a frame with so many chunks.
   void clear(std::size_t chunks) {
     for (std::vector<std::uint32_t>* list : {&first, &second}) make_room(*list, chunks);
@@ -29,6 +36,7 @@ struct QueryPlan {
     second.clear();
     asked.clear();
     governed.clear();
+    queries = 0;
   }
 };
 

@@ -1,6 +1,7 @@
 // Which parts of an octree are asked about, against a world in which a wall hides what lies behind it.
 #include "render/strategy/query_chooser.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <deque>
 #include <set>
@@ -15,10 +16,17 @@ namespace {
 constexpr glm::uvec2 kSize{800, 600};
 constexpr std::uint32_t kSlots = 20'000;
 
+/// How boxes lie in the cube.
+enum class Places : std::uint8_t {
+  even,
+  checkered  ///< hardly any in every other cell of the octree's third level
+};
+
 /// Boxes in a cube of 100 m; what lies wholly behind `wall_z_m` is hidden.
 class World {
  public:
-  explicit World(const QueryChooser::Settings& settings, const model::UnitCosts& costs)
+  explicit World(const QueryChooser::Settings& settings, const model::UnitCosts& costs,
+                 Places places = Places::even)
       : costs_(costs), chooser(settings) {
     const Random random(4, "query chooser");
     boxes_.resize(kSlots);
@@ -29,6 +37,9 @@ class World {
     for (std::uint32_t i = 0; i < kSlots; ++i) {
       const auto unit = [&](std::uint64_t k) { return random.unit(8 * i + k); };
       const glm::vec3 at(100 * unit(0) - 50, 100 * unit(1) - 50, -100 * unit(2));
+      const glm::ivec3 cell(glm::floor(at / 12.5F));
+      if (places == Places::checkered && ((cell.x + cell.y + cell.z) & 1) != 0 && i % 32 != 0)
+        continue;  // an empty box is in no tree
       boxes_.set(i, {at - 0.4F, at + 0.4F});
     }
     tree.emplace(
@@ -52,7 +63,11 @@ class World {
     if (asked_.size() == 2) {
       chooser.learn(asked_.front().first, asked_.front().second);
       answered = asked_.front().second.size();
-      for (const std::uint32_t samples : asked_.front().second) hidden_answers += samples == 0 ? 1 : 0;
+      for (std::size_t i = 0; i < answered; ++i) {
+        if (asked_.front().first[i].with_previous) continue;
+        hidden_answers += asked_.front().second[i] == 0 ? 1 : 0;
+      }
+      answered = query_count(asked_.front().first);
       asked_.pop_front();
     }
     plan.clear(chunks.size());
@@ -62,13 +77,30 @@ class World {
     check_plan(boxes);
     auto& [asked, samples] = asked_.emplace_back();
     asked = plan.asked;
-    for (const Asked& a : plan.asked) samples.push_back(a.box_m.hi.z < wall_z_m ? 0 : 7);
+    for (std::size_t i = 0, end = 0; i < asked.size(); i = end) {
+      bool hidden = true;
+      for (end = i; end == i || (end < asked.size() && asked[end].with_previous); ++end)
+        hidden = hidden && asked[end].box_m.hi.z < wall_z_m;
+      samples.resize(end, hidden ? 0 : 7);
+    }
   }
 
-  [[nodiscard]] std::size_t truly_hidden() const {
-    std::size_t sum = 0;
-    for (const std::uint32_t c : chunks) sum += tree->chunk(c).content.box_m.hi.z < wall_z_m - 0.5F ? 1 : 0;
-    return sum;
+  [[nodiscard]] std::size_t truly_hidden() const { return behind(chunks, wall_z_m); }
+  /// How many of `some` lie wholly behind.
+  [[nodiscard]] std::size_t behind(const std::vector<std::uint32_t>& some, float z_m) const {
+    return static_cast<std::size_t>(std::count_if(some.begin(), some.end(), [&](std::uint32_t c) {
+      return tree->chunk(c).content.box_m.hi.z < z_m - 0.5F;
+    }));
+  }
+  /// Parts believed hidden, and the queries that they take.
+  [[nodiscard]] std::size_t hidden_parts() const {
+    return static_cast<std::size_t>(std::count_if(plan.asked.begin(), plan.asked.end(),
+                                                  [](const Asked& a) { return a.believed_hidden; }));
+  }
+  [[nodiscard]] std::size_t hidden_queries() const {
+    return static_cast<std::size_t>(std::count_if(plan.asked.begin(), plan.asked.end(), [](const Asked& a) {
+      return a.believed_hidden && !a.with_previous;
+    }));
   }
 
  private:
@@ -81,15 +113,28 @@ class World {
   /// Every chunk is drawn once, first or governed by a box round it that can be asked about.
   void check_plan(const QueryBoxes& boxes) const {
     std::set<std::uint32_t> all(plan.first.begin(), plan.first.end());
+    std::vector<std::vector<Asked>> queries;
+    for (const Asked& asked : plan.asked) {
+      if (asked.with_previous) {
+        REQUIRE(asked.believed_hidden);
+        REQUIRE(queries.back().front().believed_hidden);
+      } else {
+        queries.emplace_back();
+      }
+      queries.back().push_back(asked);
+    }
+    REQUIRE(plan.queries == queries.size());
     REQUIRE(plan.governed.size() == plan.second.size());
     for (std::size_t i = 0; i < plan.second.size(); ++i) {
       REQUIRE(all.insert(plan.second[i]).second);
       REQUIRE(plan.governed[i].chunk == plan.second[i]);
-      const Asked& asked = plan.asked.at(plan.governed[i].query);
-      REQUIRE(asked.believed_hidden);
       const Box box = boxes.grown(tree->chunk(plan.second[i]).content.box_m);
-      REQUIRE(glm::all(glm::lessThanEqual(asked.box_m.lo, box.lo)));
-      REQUIRE(glm::all(glm::greaterThanEqual(asked.box_m.hi, box.hi)));
+      const auto& asked = queries.at(plan.governed[i].query);
+      REQUIRE(asked.front().believed_hidden);
+      REQUIRE(std::any_of(asked.begin(), asked.end(), [&](const Asked& a) {
+        return glm::all(glm::lessThanEqual(a.box_m.lo, box.lo)) &&
+               glm::all(glm::greaterThanEqual(a.box_m.hi, box.hi));
+      }));
     }
     REQUIRE(all == std::set<std::uint32_t>(chunks.begin(), chunks.end()));
     for (const Asked& asked : plan.asked) REQUIRE_FALSE(boxes.touches_eye(asked.box_m));
@@ -111,7 +156,7 @@ Totals run(World& world, int frames) {
   Totals totals;
   for (int i = 0; i < frames; ++i) {
     world.frame();
-    totals.queries += world.plan.asked.size();
+    totals.queries += world.plan.queries;
     totals.answered += world.answered;
     totals.hidden_answers += world.hidden_answers;
   }
@@ -185,4 +230,60 @@ TEST_CASE("where nothing is hidden, gathering ends in rest, and is tried again m
   REQUIRE(begun.size() >= 2);
   CHECK(begun.size() <= 4);
   CHECK(begun[1] - begun[0] > begun[0]);
+}
+
+TEST_CASE("what stays hidden shares queries, and is asked one by one when something of it comes into view") {
+  for (const bool exact : {true, false}) {
+    INFO("exact " << exact);
+    World world({exact, true, true}, model::rough_costs(false));
+    run(world, 30);
+    REQUIRE(world.chooser.phase() == QueryChooser::Phase::asking);
+    run(world, 170);
+    REQUIRE(world.hidden_parts() > 20);
+    CHECK(2 * world.hidden_queries() <= world.hidden_parts());
+    CHECK(world.plan.second.size() >= world.truly_hidden() * 9 / 10);
+    // What comes into view is drawn as soon as that is known, and what does not is not, or not for long.
+    const std::size_t before = world.hidden_queries();
+    world.wall_z_m = -45;
+    run(world, 3);
+    if (exact) {
+      CHECK(world.hidden_queries() > before);
+      run(world, 4);
+      CHECK(world.plan.second.size() >= world.truly_hidden() * 9 / 10);
+    }
+    CHECK(world.behind(world.plan.second, world.wall_z_m + 1) == world.plan.second.size());
+    run(world, 200);
+    CHECK(world.plan.second.size() >= world.truly_hidden() * 9 / 10);
+    CHECK(2 * world.hidden_queries() <= world.hidden_parts());
+  }
+}
+
+TEST_CASE("parts that come into view often are asked one by one") {
+  World world({true, true, true}, model::rough_costs(false));
+  run(world, 100);
+  const std::size_t still = world.hidden_queries();
+  REQUIRE(2 * still <= world.hidden_parts());
+  // Each twelfth frame shows what lies at another depth.
+  std::size_t queries = 0;
+  std::size_t parts = 0;
+  for (int i = 0; i < 240; ++i) {
+    world.wall_z_m = i % 12 == 0 ? -25.0F - static_cast<float>(i % 60) : -20.0F;
+    run(world, 1);
+    queries += world.hidden_queries();
+    parts += world.hidden_parts();
+  }
+  CHECK(queries * 4 > parts * 3);
+}
+
+TEST_CASE("parts too light to be asked about do not keep those around them from becoming one") {
+  World world({true, true, true}, model::rough_costs(false), Places::checkered);
+  world.wall_z_m = -60;
+  run(world, 200);
+  REQUIRE(world.chooser.phase() == QueryChooser::Phase::asking);
+  // What the wall hides now was seen, chunk by chunk, and is found hidden so.
+  world.wall_z_m = -20;
+  run(world, 800);
+  REQUIRE(world.chooser.phase() == QueryChooser::Phase::asking);
+  CHECK(world.plan.second.size() >= world.truly_hidden() * 9 / 10);
+  CHECK(world.hidden_parts() * 8 <= world.plan.second.size());
 }

@@ -30,6 +30,7 @@ std::vector<Way> exact_ways() {
 struct Sums {
   std::uint64_t drawn = 0, queries = 0, answers = 0, believed_hidden = 0, found_hidden = 0, reveals = 0;
   std::uint64_t secondaries = 0, indirect_commands = 0;
+  std::size_t sharing = 0;  // frames in which several parts must have shared a query
 };
 Sums sums_of(const Run& run) {
   Sums sums;
@@ -43,6 +44,7 @@ Sums sums_of(const Run& run) {
     sums.reveals += r.reveals;
     sums.secondaries += r.secondaries;
     sums.indirect_commands += r.indirect_commands;
+    sums.sharing += r.believed_hidden > r.queries ? 1 : 0;
   }
   return sums;
 }
@@ -108,6 +110,9 @@ void check_ways(const Path& path, const Reference& wanted, bool both_forms, bool
     // What was believed hidden came into view on every path, and was drawn in the frame in which it did.
     CHECK((sums.reveals > 0) == (way.asks() || way.strategy == "hi-z"));
     CHECK((sums.believed_hidden > 50) == way.asks());
+    // Cuts leave too little time for what is hidden to stay so.
+    if (way.strategy != "queries") CHECK(sums.sharing == 0);
+    if (way.strategy == "queries" && path.name != "camera cuts") CHECK(sums.sharing > 0);
     const bool kept = way.asks() || way.strategy == "octree";
     CHECK((sums.secondaries > 0) == (kept && way.form == NodeForm::secondaries));
     CHECK((sums.indirect_commands > 0) == (kept && way.form == NodeForm::indirect));
