@@ -30,7 +30,7 @@ struct PlanCounters : StageTimes {
   std::uint64_t believed_hidden = 0;    ///< parts believed hidden that they are about; some share a query
   std::uint64_t answers = 0;            ///< results of earlier frames, read in this one
   std::uint64_t found_hidden = 0;       ///< of them those that say hidden
-  std::uint64_t list_bytes = 0;         ///< lists of instances, part of the bytes uploaded
+  std::uint64_t list_bytes = 0;         ///< lists of slots and blocks, part of the bytes uploaded
   std::uint64_t reveals = 0;            ///< those that say visible of what was believed hidden
 };
 

@@ -180,20 +180,22 @@ void HiZ::resized(const PassContext& context, const Target& target) {
   }
 }
 
-void HiZ::write_slots(const PassContext& context, std::uint64_t revision) {
+std::uint64_t HiZ::write_slots(const PassContext& context, std::uint64_t revision) {
   Place& p = place(context);
-  if (p.revision == revision) return;
+  if (p.revision == revision) return 0;
   const auto visible = context.scene.visible().words();
   const auto mirrored = context.scene.mirrored_slots().words();
   std::memcpy(p.bits.mapped(), visible.data(), visible.size_bytes());
   std::memcpy(p.bits.mapped() + visible.size_bytes(), mirrored.data(), mirrored.size_bytes());
   p.revision = revision;
+  return visible.size_bytes() + mirrored.size_bytes();
 }
 
-void HiZ::write_order(const PassContext& context, const HiZOrder& order) {
+std::uint64_t HiZ::write_order(const PassContext& context, const HiZOrder& order) {
   const auto blocks = order.blocks();
   in_order_ = static_cast<std::uint32_t>(blocks.size());
   if (!blocks.empty()) std::memcpy(place(context).order.mapped(), blocks.data(), blocks.size_bytes());
+  return blocks.size_bytes();
 }
 
 void HiZ::build_pyramid(const PassContext& context, Target& target) {

@@ -31,10 +31,10 @@ class HiZ {
   /// Which depth picture there is now. No frame may be in flight.
   void resized(const PassContext& context, const Target& target);
   /// Sets of slots that are visible by timeline, and mirrored; `revision` tells one state of them from
-  /// another.
-  void write_slots(const PassContext& context, std::uint64_t revision);
-  /// Which blocks the frame looks at.
-  void write_order(const PassContext& context, const HiZOrder& order);
+  /// another. Returns how many bytes were written.
+  std::uint64_t write_slots(const PassContext& context, std::uint64_t revision);
+  /// Which blocks the frame looks at. Returns how many bytes were written.
+  std::uint64_t write_order(const PassContext& context, const HiZOrder& order);
   /// Outside a pass: finds what a part (0 or 1) draws. Before part 1 the pyramid is made of the depth that
   /// part 0 left.
   void cull(const PassContext& context, Target& target, std::uint32_t part);

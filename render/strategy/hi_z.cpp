@@ -147,8 +147,8 @@ class HiZStrategy final : public DeviceCulled {
       culling->resized(context, pass.target());
     }
     stale_[kind] = false;
-    culling->write_slots(context, revision_);
-    culling->write_order(context, *order_);
+    counters_.list_bytes += culling->write_slots(context, revision_);
+    counters_.list_bytes += culling->write_order(context, *order_);
     return *culling;
   }
 

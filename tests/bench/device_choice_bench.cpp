@@ -116,6 +116,7 @@ Result<void> run(const Request& request) {
   std::vector<render::Calibration> calibrations;
   for (const std::string& path : request.calibrations) {
     std::ifstream in(path, std::ios::binary);
+    if (!in) return fail(ErrorKind::io, path, "cannot be read");
     const std::string text((std::istreambuf_iterator<char>(in)), {});
     auto calibration = render::parse_calibration(text, path);
     if (!calibration) return forward_error(calibration);

@@ -121,6 +121,10 @@ TEST_CASE(
     // A frame of which nothing is known draws all; the next begins with that.
     const bool known = i > 1 && i != 13 && i != 14;
     CHECK((r.drawn < brute.frames[i].report.drawn / 10) == known);
+    // Which of 203 slots are visible and which mirrored, for the first frames of two in flight and where that
+    // changed, and which five blocks are looked at; for both passes.
+    const bool written = i < 2 || i == 13 || i == 14;
+    CHECK(r.list_bytes == 2 * ((written ? 2 * 4 * sizeof(std::uint64_t) : 0) + 5 * sizeof(std::uint32_t)));
     // Four blocks of 64 slots and the wall; twice as many once something was turned over: in two parts.
     const bool turned = i >= 13;
     CHECK(r.draws == (turned ? 20 : 10));
