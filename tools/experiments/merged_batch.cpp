@@ -274,7 +274,8 @@ Result<DocumentSection> merged_batch(const ExperimentContext& context) {
   figures.animation.note =
       "D table 34: the whole of its project's animations, of a length and number of frames that it does not "
       "give, along a camera path; its figures are beside the last camera path. Here every frame changes "
-      "something, so the merged renderer merges for each. Compare the ratios, not the seconds.";
+      "something, so the merged renderer merges for each, by all processors. Compare the ratios, not the "
+      "seconds.";
   DocumentSection out{"merged-batch", "Against a renderer that merges meshes", {}, {}};
   out.paragraphs.push_back(
       "Standing still, adaptive takes " + range_of(figures.still_ratios) +
