@@ -19,9 +19,9 @@ constexpr std::uint32_t kFirstWait = 8;
 constexpr std::uint32_t kLongestWait = 256;
 // What was out of the frustum for so long is not known any more.
 constexpr std::uint32_t kForget = 64;
-// Asking about what may be visible wastes queries: a share of the hidden parts, but of the queries about them
-// no more than another; some always.
-constexpr std::size_t kAgainShare = 8, kAgainLeast = 1, kAgainWaste = 3;
+// Asking about what may be visible wastes queries: a share of the hidden parts, as long as it is also a share
+// of the queries about them; some always.
+constexpr std::size_t kAgainShare = 8, kAgainOfQueries = 2, kAgainLeast = 1;
 constexpr std::size_t kJoinedShare = 2, kJoinedLeast = 8;
 // Answers in a row after which a part that is hidden may share a query, how many more of them make it more
 // certain to stay so, and how many parts share one.
@@ -450,7 +450,7 @@ void QueryChooser::ask_best(const Frame& frame, QueryPlan& plan) {
   }
   const std::size_t parts = plan.asked.size();
   const std::size_t again =
-      std::max(kAgainLeast, std::min(parts / kAgainShare, std::size_t{plan.queries} / kAgainWaste));
+      std::max(kAgainLeast, std::min(parts / kAgainShare, std::size_t{plan.queries} / kAgainOfQueries));
   ask_some(joined_, std::max(kJoinedLeast, parts / kJoinedShare), plan);
   ask_some(again_, again, plan);
   ask_some(unknown_, kGatheredAtOnce, plan);
