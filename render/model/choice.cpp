@@ -156,6 +156,11 @@ std::optional<Reason> Choice::objection(const Offer& now, const Offer& other, st
   return std::nullopt;
 }
 
+bool Choice::trial_lost(const Offer& now, const Offer& best) const {
+  return in_trial() && since_change_ >= options_.trial_judged_frames && best.ready &&
+         now.frame_s > (1.0 + options_.trial_loss) * best.frame_s;
+}
+
 Choice::Decision Choice::decide(std::span<const Offer> offers, std::size_t present, std::uint32_t elapsed,
                                 const Correction* correction) {
   const Offer& now = offers[present];
@@ -172,6 +177,9 @@ Choice::Decision Choice::decide(std::span<const Offer> offers, std::size_t prese
   d.verdict.rival = offers[best].method;
   d.verdict.rival_s = offers[best].frame_s;
   if (!now.possible) {
+    d.take = best;
+  } else if (trial_lost(now, offers[best])) {
+    d.verdict.reason = Reason::cheaper;
     d.take = best;
   } else if (trial_left_ > 0.0) {
     d.verdict.reason = Reason::trial;

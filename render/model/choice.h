@@ -85,6 +85,8 @@ struct ChoiceOptions {
   /// (60 ms) is put off for 800 frames of 8 ms.
   double advance_frames = 12;
   double trial_frames = 20;         ///< how long one takes, and how long any way is kept
+  double trial_judged_frames = 8;   ///< but a trial is over after so many
+  double trial_loss = 0.05;         ///< when its frames take so much more than others would
   double trial_reach = 1.3;         ///< only of ways predicted to take at most this much more
   double trial_again_frames = 600;  ///< a way is tried again after so many
 };
@@ -108,6 +110,8 @@ class Choice {
   /// A decision was carried out. (One that asks for a way that has to be prepared is repeated until then.)
   void changed(const Decision& decision);
 
+  /// Is a way kept to measure it?
+  [[nodiscard]] bool in_trial() const { return after_trial_ && trial_left_ > 0.0; }
   [[nodiscard]] std::uint32_t since_change() const { return static_cast<std::uint32_t>(since_change_); }
 
  private:
@@ -121,6 +125,8 @@ class Choice {
   [[nodiscard]] std::optional<Reason> objection(const Offer& now, const Offer& other, std::size_t number,
                                                 double elapsed);
   void pass(double elapsed, double frame_s);
+  /// A trial that lasted long enough to be judged, and loses.
+  [[nodiscard]] bool trial_lost(const Offer& now, const Offer& best) const;
 
   ChoiceOptions options_;
   std::size_t wanted_ = 0;

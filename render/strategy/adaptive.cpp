@@ -29,8 +29,11 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// The choice may take this share of a frame.
+/// The choice may take this share of a frame, of a frame of a trial (which has to be judged soon), and of
+/// what the processor would only wait for the device.
 constexpr double kChooseShare = 0.008;
+constexpr double kChooseShareInTrial = 0.04;
+constexpr double kChooseIdleShare = 0.15;
 /// While the octree is built or brought up to date, this share of a frame is spent on that, and of what the
 /// processor would only wait for the device.
 constexpr double kPrepareShare = 0.2;
@@ -77,6 +80,7 @@ class Adaptive final : public Strategy {
     std::uint32_t since_change = 0;
     bool usual = false;  ///< says something about steady state
     model::Sides predicted;
+    double aside_s = 0;  ///< of the processor's time: choosing, preparing and changing
   };
 
   [[nodiscard]] Strategy& strategy_of(Way way) const {
@@ -85,6 +89,7 @@ class Adaptive final : public Strategy {
   }
   [[nodiscard]] Strategy& taken() const { return strategy_of(way_); }
   [[nodiscard]] model::Method method_of(Way way, const model::FrameFacts& facts) const;
+  [[nodiscard]] double idle_s() const;
   [[nodiscard]] bool due() const;
   void learn_of_last_frame();
   void gather(const View& view);
@@ -171,11 +176,19 @@ void Adaptive::update(const timeline::ChangeSet& changes) {
   left_chunks_.add(touched.left);
 }
 
+/// So long the processor would only wait for the device. A device that is the processor leaves nothing idle.
+double Adaptive::idle_s() const {
+  if (context_.frames_in_flight <= 1 || context_.device.info.type == "CPU") return 0.0;
+  return std::max(0.0, gpu_s_ - cpu_s_);
+}
+
 /// As often as the choice keeps to its share of a frame.
 bool Adaptive::due() const {
   if (frame_ <= 2) return true;
-  const double share = kChooseShare * std::max(1e-6, frame_s({cpu_s_, gpu_s_}));
-  return static_cast<double>(frame_ - decided_frame_) >= std::min(60.0, choose_s_ / share);
+  const double share_s =
+      (choice_.in_trial() ? kChooseShareInTrial : kChooseShare) * std::max(1e-6, frame_s({cpu_s_, gpu_s_}));
+  return static_cast<double>(frame_ - decided_frame_) >=
+         std::min(60.0, choose_s_ / std::max(share_s, kChooseIdleShare * idle_s()));
 }
 
 void Adaptive::plan(const View& view) {
@@ -185,6 +198,7 @@ void Adaptive::plan(const View& view) {
   // Memory ran out while it drew.
   if ((way_ == tree && !tree_->available()) || (way_ == device && !device_->available())) way_ = flat;
   taken().plan(view);
+  const auto aside = Clock::now();
   report_.choose_s = 0;
   if (context_.options.change_every != 0) {
     force(view);
@@ -199,6 +213,9 @@ void Adaptive::plan(const View& view) {
       choose_s_ += 0.2 * (report_.choose_s - choose_s_);
     }
   }
+  Drawn& drawn = drawn_[frame_ % drawn_.size()];
+  if (drawn.frame != frame_) drawn = {frame_, way_, method_of(way_, {}), since_change_, false, {}};
+  drawn.aside_s = seconds_since(aside);
   passes_ = 0;
   counters_ = taken().counters();
   forward();
@@ -328,8 +345,7 @@ void Adaptive::decide(const View& view) {
 
 /// A slice of what was put off, while something else draws.
 void Adaptive::prepare() {
-  double budget_s = kPrepareShare * frame_s({cpu_s_, gpu_s_});
-  if (context_.frames_in_flight > 1) budget_s = std::max(budget_s, kIdleShare * (gpu_s_ - cpu_s_));
+  const double budget_s = std::max(kPrepareShare * frame_s({cpu_s_, gpu_s_}), kIdleShare * idle_s());
   const auto start = Clock::now();
   while (!tree_->catch_up(kSlice) && seconds_since(start) < budget_s) {
   }
@@ -385,8 +401,6 @@ void Adaptive::expect() {
 
 void Adaptive::draw_solid(PassRecording& pass) {
   assert(pass.context().frame.serial == frame_);
-  Drawn& drawn = drawn_[frame_ % drawn_.size()];
-  if (drawn.frame != frame_) drawn = {frame_, way_, method_of(way_, {}), since_change_, false, {}};
   ++passes_;
   taken().draw_solid(pass);
   counters_ = taken().counters();
@@ -414,11 +428,12 @@ void Adaptive::finished(const FrameTimes& measured) {
   if (drawn.frame != measured.serial) return;
   // As slow as to outlast a hitch, as fast as to know a scene after some frames.
   constexpr double kNewest = 0.2;
-  cpu_s_ += kNewest * (std::min(measured.cpu_s, 4.0 * cpu_s_) - cpu_s_);
+  const double cpu_s = std::max(0.0, measured.cpu_s - drawn.aside_s);
+  cpu_s_ += kNewest * (std::min(cpu_s, 4.0 * cpu_s_) - cpu_s_);
   if (measured.gpu_s > 0.0) gpu_s_ += kNewest * (std::min(measured.gpu_s, 4.0 * gpu_s_) - gpu_s_);
   strategy_of(drawn.way).finished(measured);
   if (drawn.usual)
-    correction_.measured(drawn.method, drawn.since_change, drawn.predicted, {measured.cpu_s, measured.gpu_s});
+    correction_.measured(drawn.method, drawn.since_change, drawn.predicted, {cpu_s, measured.gpu_s});
 }
 
 void Adaptive::forward() {

@@ -164,6 +164,23 @@ TEST_CASE("a first trial is paid in advance, later ones are saved up for") {
   CHECK(changes({.trial_share = 0}, 400) == 0);
 }
 
+TEST_CASE("a trial that loses is over as soon as it can be judged, one that is near goes on") {
+  const auto trial_frames = [](double octree_s, const ChoiceOptions& options) {
+    Machine machine;
+    Replay replay(options);
+    int frames = 0;
+    for (int i = 0; i < 400; ++i) {
+      replay.frame(machine, {4e-3, 4.4e-3}, {4e-3, octree_s}, 0.0);
+      frames += replay.present == 1 ? 1 : 0;
+    }
+    return frames;
+  };
+  const ChoiceOptions options;
+  CHECK(trial_frames(8e-3, options) == static_cast<int>(options.trial_judged_frames));
+  CHECK(trial_frames(8e-3, {.trial_loss = 10}) >= static_cast<int>(options.trial_frames));
+  CHECK(trial_frames(4.15e-3, options) >= static_cast<int>(options.trial_frames));
+}
+
 TEST_CASE("the correction is bounded, slow, and tells the machine from the way") {
   Correction c;
   const Sides predicted{1e-3, 2e-3};
