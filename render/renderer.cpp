@@ -15,6 +15,7 @@
 #include "render/passes/draw_recorder.h"
 #include "render/passes/pass_recording.h"
 #include "render/passes/targets.h"
+#include "render/strategy/estimate_load.h"
 #include "render/strategy/octree_choice.h"
 #include "render/strategy/strategy.h"
 #include "render/strategy/touched_chunks.h"
@@ -72,7 +73,7 @@ struct Renderer::State {
             false,
             options.shadows && options.outputs.color};
   }
-  void predict(const timeline::ChangeSet& changes, FrameReport& report) const;
+  void predict(const timeline::ChangeSet& changes, const View& view, FrameReport& report) const;
   void finish(FrameResult& out);
   /// Runs `body`; what it throws becomes an error, now and in every later call.
   template <class Body>
@@ -263,7 +264,7 @@ void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline:
   report.record_ms = ms_since(start);
   if (options.predictions) {  // before the device begins: it must not work meanwhile
     const StageTimer timer(report.predict_ms);
-    predict(changes, report);
+    predict(changes, view, report);
   }
 
   start = Clock::now();
@@ -286,9 +287,11 @@ void Renderer::State::submit(const timeline::ChangeSet& changes, const timeline:
 }
 
 /// What every way of drawing would have cost; what the one that was taken did not find out is estimated.
-void Renderer::State::predict(const timeline::ChangeSet& changes, FrameReport& report) const {
+void Renderer::State::predict(const timeline::ChangeSet& changes, const View& view,
+                              FrameReport& report) const {
   model::FrameFacts facts = strategy->facts();
   facts.changed = static_cast<double>(report.changed);
+  facts.visible = load_of_visible(*scene, ScreenArea(view, options.size));
   if (options.shadows && options.outputs.color) {
     facts.shadow_slots = facts.visible.draws;
     facts.shadow_vertices = facts.visible.vertices;

@@ -233,15 +233,13 @@ void Adaptive::gather(const View& view) {
   facts_ = {};
   stale_draws_ = 0;
   if (way_ != tree) {
-    if (way_ == device) flat_->plan(view);
-    facts_ = flat_->facts();
-    if (tree_->available() && built_ && !tree_->behind()) {
+    facts_ = way_ == device ? device_->estimated_facts() : flat_->facts();
+    if (near() && !tree_->behind()) {  // far from worth it, a guess will do
       tree_->plan(view);
       model::FrameFacts kept;
       tree_->foresee(kept);
       kept.visible_slots = facts_.visible_slots;
       kept.screen_pixels = facts_.screen_pixels;
-      kept.visible = facts_.visible;
       kept.in_frustum = facts_.in_frustum;
       kept.blended = facts_.blended;
       kept.exact_inline = kept.exact_octree = true;
@@ -259,6 +257,7 @@ void Adaptive::gather(const View& view) {
   facts_.hi_z_blocks = device_->blocks();
   facts_.changed = changed_.value();
   if (context_.shadows) {
+    facts_.visible = load_of_visible(context_.scene, ScreenArea(view, context_.size));
     facts_.shadow_slots = facts_.visible.draws;
     facts_.shadow_vertices = facts_.visible.vertices;
   }

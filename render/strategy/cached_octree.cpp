@@ -103,9 +103,6 @@ void CachedOctree::foresee(model::FrameFacts& facts) const {
   facts.boxes_tested = static_cast<double>(found_.tests);
   facts.chunks = static_cast<double>(chunks_.size());
   facts.in_chunks = load_of_chunks(scene_, tree(), chunks_, ScreenArea(view_, context_.size));
-  facts.in_frustum = load_in_frustum(scene_, tree(), chunks_,
-                                     cull_planes(frustum_of(view_.clip_from_world), scene_.bounds_m()),
-                                     ScreenArea(view_, context_.size));
   const PerDraw each = per_draw();
   facts.commands_per_draw = each.commands;
   facts.runs_per_chunk = each.runs;
@@ -165,6 +162,8 @@ model::FrameFacts CachedOctree::facts() const {
   facts.changed = static_cast<double>(changed_);
   facts.chunks_refreshed = static_cast<double>(refreshed_.chunks);
   facts.slots_refreshed = static_cast<double>(refreshed_.slots);
+  facts.in_frustum = load_in_frustum(
+      scene_, tree(), chunks_, cull_planes(frustum_of(view_.clip_from_world), scene_.bounds_m()), screen);
   foresee(facts);
   if (passes_ > 0) {  // otherwise what was foreseen stands
     facts.chunks_rerecorded = static_cast<double>(counters_.recorded) / recordings();

@@ -13,6 +13,8 @@ class DeviceCulled : public ListStrategy {
   [[nodiscard]] virtual bool available() const = 0;
   /// Blocks of slots that it has the device look at.
   [[nodiscard]] virtual double blocks() const = 0;
+  /// facts() in little time, for decisions: what is in the frustum is estimated from a sample of all.
+  [[nodiscard]] virtual model::FrameFacts estimated_facts() const = 0;
   /// What the last frame that is done drew, if it is known, into `facts`, whose in_frustum must be.
   virtual void add_seen(model::FrameFacts& facts) const = 0;
 };

@@ -27,8 +27,7 @@ class Coverage {
       for (int x = first(lo.x); x < std::min<double>(kColumns, hi.x); ++x) {
         const double share = part(lo.x, hi.x, x) * part(lo.y, hi.y, y) * filled;
         inside += share;
-        open_[static_cast<std::size_t>(y) * kColumns + static_cast<std::size_t>(x)] +=
-            times * std::log1p(-std::min(share, kAll));
+        open_[static_cast<std::size_t>(y) * kColumns + static_cast<std::size_t>(x)] += times * ln_open(share);
       }
     }
     return inside * cell.x * cell.y;
@@ -43,6 +42,12 @@ class Coverage {
   static constexpr int kColumns = 16, kRows = 9;
   static constexpr double kAll = 0.9999;
   static int first(double at) { return static_cast<int>(std::clamp(at, 0.0, 1e6)); }
+  /// ln(1 - share); of small shares by the series: nearly all are, and the logarithm took half of an
+  /// estimate.
+  static double ln_open(double share) {
+    if (share < 0.01) return -share * (1.0 + share * (0.5 + share / 3.0));  // off by less than 3e-9
+    return std::log1p(-std::min(share, kAll));
+  }
 
   const ScreenArea& screen_;
   std::array<double, kColumns * kRows> open_{};  // logarithms of the open share
@@ -146,6 +151,7 @@ ScreenArea::ScreenArea(const View& view, glm::uvec2 size) {
               std::abs(static_cast<double>(view.clip_from_camera[1][1]));
   } else {
     screen_.yfov_rad = 2.0 * std::atan(1.0 / std::abs(static_cast<double>(view.clip_from_camera[1][1])));
+    per_m_ = 0.5 * screen_.height * std::abs(static_cast<double>(view.clip_from_camera[1][1]));
   }
 }
 
@@ -171,10 +177,10 @@ ScreenArea::Spot ScreenArea::spot(const Box& box) const {
     const glm::dvec3 seen_from =
         per_m2_ != 0.0 ? glm::abs(screen_.forward) : glm::abs(glm::normalize(middle - screen_.eye_m));
     const double face_m2 = glm::dot(seen_from, glm::dvec3(s.y * s.z, s.z * s.x, s.x * s.y));
-    const double per_m = 0.5 * screen_.height / std::tan(0.5 * screen_.yfov_rad);
     // A plane is hit the more aslant the farther it is from the middle of the picture.
     const double slant = per_m2_ != 0.0 ? 1.0 : glm::length(middle - screen_.eye_m) / distance;
-    const double fragments = face_m2 * slant * (per_m2_ != 0.0 ? per_m2_ : std::pow(per_m / distance, 2.0));
+    const double per_m = per_m_ / distance;
+    const double fragments = face_m2 * slant * (per_m2_ != 0.0 ? per_m2_ : per_m * per_m);
     const double wide = std::max(glm::dot(glm::abs(right_), s), 1e-9 * glm::length(s));
     const double high = std::max(glm::dot(glm::abs(up_), s), 1e-9 * glm::length(s));
     if (fragments > 0.0)
@@ -188,10 +194,10 @@ ScreenArea::Spot ScreenArea::spot(const Box& box) const {
 }
 
 model::Load load_of_slots(const DrawScene& scene, std::span<const std::uint32_t> slots,
-                          const ScreenArea& screen) {
+                          const ScreenArea& screen, std::size_t each_stands_for) {
   Sample sample(scene, screen);
   for (Steps steps(slots.size()); steps.below(slots.size()); steps.next()) sample.add(slots[steps.at()]);
-  return sample.scaled(slots.size());
+  return sample.scaled(slots.size() * each_stands_for);
 }
 
 model::Load load_of_visible(const DrawScene& scene, const ScreenArea& screen) {
@@ -237,7 +243,6 @@ void add_scene_facts(const DrawScene& scene, const ScreenArea& screen, model::Fr
     visible += static_cast<std::size_t>(std::popcount(bits));
   facts.visible_slots = static_cast<double>(visible);
   facts.screen_pixels = screen.pixels();
-  facts.visible = load_of_visible(scene, screen);
 }
 
 model::Load load_in_frustum(const DrawScene& scene, const Octree& tree, std::span<const std::uint32_t> chunks,

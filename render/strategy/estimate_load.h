@@ -35,15 +35,16 @@ class ScreenArea {
   model::Screen screen_;
   glm::dmat4 clip_from_world_{1};
   glm::dvec3 right_{1, 0, 0}, up_{0, 1, 0};
+  double per_m_ = 0;   // perspective: pixels a metre, a metre away
   double per_m2_ = 0;  // orthographic: pixels a square metre
 };
 
 /// Slots looked at for one estimate; longer lists are sampled at equal steps and scaled.
 constexpr std::size_t kSampledSlots = 512;
 
-/// Draws are exact, the rest by kSampledSlots.
+/// Draws are exact (of a list that is not a sample itself), the rest by kSampledSlots.
 [[nodiscard]] model::Load load_of_slots(const DrawScene& scene, std::span<const std::uint32_t> slots,
-                                        const ScreenArea& screen);
+                                        const ScreenArea& screen, std::size_t each_stands_for = 1);
 /// Of opaque and masked slots that are visible by timeline. O(slots / 64).
 [[nodiscard]] model::Load load_of_visible(const DrawScene& scene, const ScreenArea& screen);
 /// Draws, vertices and triangles are exact, the rest by kSampledSlots.
@@ -54,7 +55,8 @@ constexpr std::size_t kSampledSlots = 512;
                                           std::span<const std::uint32_t> chunks, const CullPlanes& planes,
                                           const ScreenArea& screen);
 
-/// What all ways of drawing know of the scene.
+/// What all ways of drawing know of the scene, but not FrameFacts::visible: who wants that looks at all of
+/// it.
 void add_scene_facts(const DrawScene& scene, const ScreenArea& screen, model::FrameFacts& facts);
 
 }  // namespace scenegen::render
