@@ -16,6 +16,10 @@ Load scaled(Load load, double by) {
   return load;
 }
 
+/// What is seen, by seen_share(), may be wrong by so much; between bricks a town lets twice as much be seen.
+constexpr double kMostOff = 4.0;
+constexpr double kNewest = 0.25;
+
 double share(double part, double all) {
   return all > 0.0 ? std::clamp(part / all, 0.0, 1.0) : 0.0;
 }
@@ -52,9 +56,13 @@ void Experience::learn(const FrameFacts& f) {
     if (f.in_frustum.draws > 0.0) excess_ = std::clamp(f.in_chunks.draws / f.in_frustum.draws, 1.0, 3.0);
   }
   if (f.exact_seen && f.in_frustum.draws > 0.0) {
+    // Slowly, and within bounds: the counts are some frames old, and say nothing after a seek or a cut.
+    const auto towards = [&](double& mean, double part) {
+      mean += (culled_ ? kNewest : 1.0) * (std::clamp(part / seen_share(f), 1.0 / kMostOff, kMostOff) - mean);
+    };
+    towards(draws_seen_, share(f.seen.draws, f.in_frustum.draws));
+    towards(vertices_seen_, share(f.seen.vertices, f.in_frustum.vertices));
     culled_ = true;
-    draws_seen_ = share(f.seen.draws, f.in_frustum.draws) / seen_share(f);
-    vertices_seen_ = share(f.seen.vertices, f.in_frustum.vertices) / seen_share(f);
   }
   if (f.exact_queries && f.chunks > 0.0) {
     queried_ = true;

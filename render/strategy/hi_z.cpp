@@ -2,6 +2,8 @@
 // behind the depth that this leaves (Greene, Kass and Miller 1993; in two parts as Haar and Aaltonen 2015).
 // The processor touches nothing but what changed.
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <memory>
 #include <new>
 
@@ -64,6 +66,7 @@ class HiZStrategy final : public DeviceCulled {
     }
     if (culling == nullptr) return ListStrategy::draw_solid(pass);
 
+    drawn_[pass.context().frame.serial % drawn_.size()] = {pass.context().frame.serial, picture()};
     pass.in_two_parts();
     culling->cull(pass.context(), pass.target(), 0);
     culling->draw(pass.draws(), *order_, 0);
@@ -92,14 +95,17 @@ class HiZStrategy final : public DeviceCulled {
 
   void finished(const FrameTimes& measured) override {
     const DeviceCounts counts = device_counts(measured.serial);
-    if (counts.drawn > 0) last_ = counts;
+    const Drawn& drawn = drawn_[measured.serial % drawn_.size()];
+    if (counts.drawn == 0 || drawn.serial != measured.serial) return;
+    last_ = counts;
+    last_picture_ = drawn.picture;
   }
 
   [[nodiscard]] bool available() const override { return !inline_; }
   [[nodiscard]] double blocks() const override { return blocks_; }
   void add_seen(model::FrameFacts& facts) const override {
     facts.hi_z_blocks = blocks_;
-    if (inline_ || last_.drawn == 0) return;
+    if (inline_ || last_.drawn == 0 || !alike(last_picture_, picture())) return;
     const model::Load& all = facts.in_frustum;
     facts.seen.draws = std::min(static_cast<double>(last_.drawn), all.draws);
     facts.seen.triangles = std::min(static_cast<double>(last_.triangles), all.triangles);
@@ -125,6 +131,25 @@ class HiZStrategy final : public DeviceCulled {
 
  private:
   enum Kind : std::size_t { color, ids };
+  /// What a frame looked at.
+  struct Picture {
+    glm::vec3 eye_m{0}, forward{0};
+    double visible = 0;  ///< objects, by timeline
+  };
+  struct Drawn {
+    std::uint64_t serial = 0;
+    Picture picture;
+  };
+
+  [[nodiscard]] Picture picture() const {
+    return {view_.eye_m(), view_.forward(), static_cast<double>(scene_.visible_object_count())};
+  }
+  /// Does what was seen in one frame say something about another? Not after a seek or a cut.
+  [[nodiscard]] bool alike(const Picture& a, const Picture& b) const {
+    const double most = std::max(a.visible, b.visible);
+    return std::abs(a.visible - b.visible) <= 0.25 * most && glm::dot(a.forward, b.forward) > 0.9F &&
+           glm::distance(a.eye_m, b.eye_m) <= 0.05F * glm::length(scene_.bounds_m().size());
+  }
 
   /// Of one word of slots in `every`.
   [[nodiscard]] model::FrameFacts facts_of(std::size_t every) const {
@@ -174,7 +199,9 @@ class HiZStrategy final : public DeviceCulled {
 
   std::uint32_t frames_in_flight_;
   double blocks_;
+  std::array<Drawn, 8> drawn_;  // more than can be in flight
   DeviceCounts last_;
+  Picture last_picture_;
   bool inline_ = false;
   mutable DrawList in_frustum_;  // scratch of facts()
   std::uint64_t revision_ = 1;   // of the sets of visible and mirrored slots
