@@ -178,7 +178,7 @@ TEST_CASE("a trial that loses is over as soon as it can be judged, one that is n
   const ChoiceOptions options;
   CHECK(trial_frames(8e-3, options) == static_cast<int>(options.trial_judged_frames));
   CHECK(trial_frames(8e-3, {.trial_loss = 10}) >= static_cast<int>(options.trial_frames));
-  CHECK(trial_frames(4.08e-3, options) >= static_cast<int>(options.trial_frames));
+  CHECK(trial_frames(4.02e-3, options) >= static_cast<int>(options.trial_frames));
 }
 
 TEST_CASE("the correction is bounded, slow, and tells the machine from the way") {
