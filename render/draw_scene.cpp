@@ -33,6 +33,32 @@ DrawScene::DrawScene(const Scene& scene, const timeline::Player& player,
     }
   }
   refresh_bounds();
+  find_large_slots();
+}
+
+void DrawScene::find_large_slots() {
+  constexpr std::size_t kMost = 64;
+  constexpr float kTimes = 8.0F;  // the median's diagonal; walls and roofs of bricks stay below
+  std::vector<float> diagonals(solid_end_);
+  for (std::uint32_t slot = 0; slot < solid_end_; ++slot) {
+    const Box box = boxes_.get(slot);
+    diagonals[slot] = box.empty() ? 0.0F : glm::length(box.size());
+  }
+  if (diagonals.size() <= kMost) return;
+  std::vector<float> ranked = diagonals;
+  const auto ranked_at = [&](std::size_t rank) {
+    const auto at = ranked.begin() + static_cast<std::ptrdiff_t>(rank);
+    std::nth_element(ranked.begin(), at, ranked.end());
+    return *at;
+  };
+  const float above = std::max(kTimes * ranked_at(ranked.size() / 2), ranked_at(ranked.size() - kMost - 1));
+  for (std::uint32_t slot = 0; slot < solid_end_; ++slot) {
+    if (diagonals[slot] > above) large_slots_.push_back(slot);
+  }
+}
+
+bool DrawScene::large(std::uint32_t slot) const {
+  return std::binary_search(large_slots_.begin(), large_slots_.end(), slot);
 }
 
 void DrawScene::build_primitives(const Scene& scene, std::span<const std::uint32_t> texture_set_of_material) {
@@ -225,7 +251,7 @@ void DrawScene::clear_dirty() {
 
 std::uint64_t DrawScene::memory_bytes() const {
   return held_bytes(primitives_, primitives_of_mesh_, batches_, primitive_of_slot_, object_of_slot_,
-                    first_slot_of_object_, slots_by_object_) +
+                    first_slot_of_object_, slots_by_object_, large_slots_) +
          held_bytes(visible_object_, moving_objects_, dirty_slots_, dirty_records_) + boxes_.memory_bytes() +
          visible_.memory_bytes() + mirrored_.memory_bytes();
 }

@@ -104,6 +104,10 @@ class DrawScene {
   /// Its transform turns the object inside out: front faces wind the other way.
   [[nodiscard]] bool mirrored(std::uint32_t slot) const { return mirrored_.test(slot); }
   [[nodiscard]] const BitSet& mirrored_slots() const { return mirrored_; }
+  /// The few solid slots that are much larger than most: ground, streets. Ascending; a sample of others says
+  /// nothing of them. By their boxes at the first moment.
+  [[nodiscard]] std::span<const std::uint32_t> large_slots() const { return large_slots_; }
+  [[nodiscard]] bool large(std::uint32_t slot) const;
   /// Box round everything where it is now, hidden or not: what shadows must reach. Like all state here it
   /// depends on the time alone, not on the frames drawn before, so that a picture does not either.
   [[nodiscard]] const Box& bounds_m() const { return bounds_m_; }
@@ -121,6 +125,7 @@ class DrawScene {
  private:
   void build_primitives(const Scene& scene, std::span<const std::uint32_t> texture_set_of_material);
   void build_slots(const Scene& scene);
+  void find_large_slots();
   void place(ObjectId id, const glm::mat4& world_from_object);
   void refresh_visibility(ObjectId id, const timeline::Player& player);
   void add_boxes_of(ObjectId id, Box& bounds_m) const;
@@ -134,6 +139,7 @@ class DrawScene {
   std::vector<std::uint32_t> object_of_slot_;
   std::vector<std::uint32_t> first_slot_of_object_;  // into slots_by_object_; one more than objects
   std::vector<std::uint32_t> slots_by_object_;
+  std::vector<std::uint32_t> large_slots_;
   SlotBoxes boxes_;
   BitSet visible_;
   BitSet mirrored_;

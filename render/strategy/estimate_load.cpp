@@ -59,10 +59,14 @@ constexpr double kDeepest = 4.0;
 /// Sums up some slots of many, then scales.
 class Sample {
  public:
-  Sample(const DrawScene& scene, const ScreenArea& screen) : scene_(scene), screen_(screen) {}
+  /// `all`: nothing is left out.
+  Sample(const DrawScene& scene, const ScreenArea& screen, bool all)
+      : scene_(scene), screen_(screen), all_(all) {}
 
+  /// Large slots do not stand for others: of a sample they are left out, and counted one by one.
   void add(std::uint32_t slot) {
     const DrawPrimitive& primitive = scene_.primitive(slot);
+    if (!all_ && scene_.large(slot)) return;
     spots_[taken_++] = {screen_.spot(scene_.boxes().get(slot)), primitive.work.covered_share};
     vertices_ += primitive.work.vertices;
     triangles_ += primitive.work.triangles;
@@ -87,6 +91,13 @@ class Sample {
           scale, std::max(1.0, kDeepest * screen_.pixels() / std::max(1.0, filled * spot.fragments())));
       load.fragments += like * coverage.add(spot, filled, like);
     }
+    if (!all_) {
+      for (const std::uint32_t slot : scene_.large_slots()) {
+        if (scene_.visible().test(slot))
+          load.fragments += coverage.add(screen_.spot(scene_.boxes().get(slot)),
+                                         scene_.primitive(slot).work.covered_share, 1.0);
+      }
+    }
     load.screen_share = coverage.share();
     return load;
   }
@@ -94,6 +105,7 @@ class Sample {
  private:
   const DrawScene& scene_;
   const ScreenArea& screen_;
+  bool all_;
   std::size_t taken_ = 0;
   double vertices_ = 0, triangles_ = 0, textured_ = 0;
   std::array<std::pair<ScreenArea::Spot, double>, kSampledSlots> spots_;  // no memory is asked for in a frame
@@ -195,7 +207,8 @@ ScreenArea::Spot ScreenArea::spot(const Box& box) const {
 
 model::Load load_of_slots(const DrawScene& scene, std::span<const std::uint32_t> slots,
                           const ScreenArea& screen, std::size_t each_stands_for) {
-  Sample sample(scene, screen);
+  const bool solid = !slots.empty() && slots.front() < scene.solid_end();
+  Sample sample(scene, screen, each_stands_for == 1 && (!solid || slots.size() <= kSampledSlots));
   for (Steps steps(slots.size()); steps.below(slots.size()); steps.next()) sample.add(slots[steps.at()]);
   return sample.scaled(slots.size() * each_stands_for);
 }
@@ -205,7 +218,7 @@ model::Load load_of_visible(const DrawScene& scene, const ScreenArea& screen) {
   std::size_t count = 0;
   for (std::size_t w = 0; w < words; ++w)
     count += static_cast<std::size_t>(std::popcount(solid_bits(scene, w)));
-  Sample sample(scene, screen);
+  Sample sample(scene, screen, count <= kSampledSlots);
   Steps steps(count);
   std::size_t passed = 0;
   for (std::size_t w = 0; w < words; ++w) {
@@ -223,7 +236,7 @@ model::Load load_of_visible(const DrawScene& scene, const ScreenArea& screen) {
 model::Load load_of_chunks(const DrawScene& scene, const Octree& tree, std::span<const std::uint32_t> chunks,
                            const ScreenArea& screen) {
   const Sums all = sums_of(tree, chunks);
-  Sample sample(scene, screen);
+  Sample sample(scene, screen, all.slots <= kSampledSlots);
   Steps steps(all.slots);
   std::size_t passed = 0;
   for (const std::uint32_t number : chunks) {
@@ -248,7 +261,7 @@ void add_scene_facts(const DrawScene& scene, const ScreenArea& screen, model::Fr
 model::Load load_in_frustum(const DrawScene& scene, const Octree& tree, std::span<const std::uint32_t> chunks,
                             const CullPlanes& planes, const ScreenArea& screen) {
   const Sums all = sums_of(tree, chunks);
-  Sample sample(scene, screen);
+  Sample sample(scene, screen, all.slots <= kSampledSlots);
   Steps steps(all.slots);
   std::size_t passed = 0;
   std::size_t inside = 0;

@@ -104,6 +104,23 @@ TEST_CASE("what is near the eye does not stand for hundreds of its kind") {
   CHECK(load_of_slots(scene, list.solid, screen).fragments == Approx(all).epsilon(0.5));
 }
 
+TEST_CASE("the ground counts once, whether the sample meets it or not") {
+  for (std::size_t objects = 2000; objects < 2012; ++objects) {
+    Scene source = boxes_scene(objects);
+    const MeshId ground = add_mesh(source, box_geometry(), plain({0, 1, 0, 1}));
+    add_object(source, "ground", ground, {0, -1, 0}, {45, 0.1F, 45});
+    const timeline::Player player(timeline::compile(source));
+    const DrawScene scene(source, player, std::vector<std::uint32_t>(source.materials.size() + 1, 0));
+    const ScreenArea screen(look({0, 20, 60}, {0, 5, 0}, kSize), kSize);
+    DrawList list;
+    list_visible(scene, list);
+    CHECK(scene.large_slots().size() == 1);
+    const double all = sum_of(scene, list.solid, screen).fragments;
+    CHECK(load_of_slots(scene, list.solid, screen).fragments == Approx(all).epsilon(0.1));
+    CHECK(load_of_visible(scene, screen).fragments == Approx(all).epsilon(0.1));
+  }
+}
+
 TEST_CASE("from a sample of changes it is guessed how many chunks they touch") {
   const Scene source = boxes_scene(20'000);
   timeline::Player player(timeline::compile(source));
