@@ -138,7 +138,7 @@ details .scroll { margin-top: 0.5rem; max-height: 24rem; }
   h1 { font-size: 1.55rem; }
   .glance { grid-template-columns: minmax(0, 1fr); gap: 0.6rem; }
   th, td { padding: 0.35rem 0.5rem; }
-  tbody th { max-width: 9rem; white-space: normal; min-width: 0; }
+  tbody th, tbody th.s { max-width: 9rem; white-space: normal; min-width: 0; }
   svg.broad { display: none; } svg.slim { display: block; }
   .verdicts, .verdicts tbody, .verdicts tr, .verdicts th, .verdicts td { display: block; min-width: 0; max-width: none; }
   .verdicts { border: 0; } .verdicts thead { display: none; }
