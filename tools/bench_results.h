@@ -1,6 +1,7 @@
 // What a benchmark found: summaries with spread, the files bench.json and bench.csv, the table.
 #pragma once
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -83,6 +84,7 @@ class RunStore {
 
   std::string folder_;
   nlohmann::ordered_json settings_;
+  mutable std::map<std::string, std::uint64_t> hashes_;  // of files, each read once
 };
 
 }  // namespace scenegen::tools

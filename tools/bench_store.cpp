@@ -25,9 +25,19 @@ namespace fs = std::filesystem;
 constexpr std::string_view kSuffix = ".run.json";
 
 /// FNV-1a.
-std::uint64_t hash(std::string_view text) {
-  std::uint64_t h = 0xcbf29ce484222325U;
+constexpr std::uint64_t kHashOfNothing = 0xcbf29ce484222325U;
+std::uint64_t hash(std::string_view text, std::uint64_t h = kHashOfNothing) {
   for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+  return h;
+}
+
+/// Of what is in a file; of nothing when it cannot be read.
+std::uint64_t hash_of_file(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::vector<char> part(std::size_t{1} << 20);
+  std::uint64_t h = kHashOfNothing;
+  while (in.read(part.data(), static_cast<std::streamsize>(part.size())) || in.gcount() > 0)
+    h = hash({part.data(), static_cast<std::size_t>(in.gcount())}, h);
   return h;
 }
 
@@ -96,11 +106,10 @@ std::string RunStore::path(const BenchCase& what, std::uint32_t repetition) cons
 
 ordered_json RunStore::settings_of(const BenchCase& what) const {
   ordered_json out = settings_;
-  for (const auto& [name, file] :
-       {std::pair("fileBytes", what.file), std::pair("cameraBytes", what.camera)}) {
-    std::error_code error;
-    const std::uintmax_t bytes = fs::file_size(file, error);
-    out[name] = error ? 0 : static_cast<std::uint64_t>(bytes);
+  for (const auto& [name, file] : {std::pair("fileHash", what.file), std::pair("cameraHash", what.camera)}) {
+    auto known = hashes_.find(file);
+    if (known == hashes_.end()) known = hashes_.emplace(file, hash_of_file(file)).first;
+    out[name] = known->second;
   }
   return out;
 }

@@ -478,13 +478,13 @@ std::vector<Verdict> verdicts_of(const Sums& sums, const UpdateSums& updates, do
       judged({"D 5.2, building", "octree against BVH-SAH", "octree several times faster",
               "octree " + times(by_sah), Finding::level,
               "SAH looks for the best split at every node, an octree splits in the middle"},
-             by_sah < 1),
+             by_sah < 0.5),
       judged(
           {"D 5.2, building", "octree against Morton LBVH", "octree several times faster",
            "octree " + times(by_lbvh), Finding::level,
            "an LBVH sorts all codes at once; the octree takes object by object, which is what lets it follow "
            "changes"},
-          by_lbvh < 1),
+          by_lbvh < 0.5),
       judged({"D 5.2, updates", "octree against building a hierarchy anew", "octree faster",
               "octree " + times(updating), Finding::level,
               "a change touches a few nodes of the octree; building anew costs all objects"},
