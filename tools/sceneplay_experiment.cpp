@@ -127,7 +127,7 @@ class Laboratory {
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> facts() const {
     const ordered_json machine = machine_json();
     const auto word = [](const ordered_json& v) { return v.is_string() ? v.get<std::string>() : v.dump(); };
-    std::vector<std::pair<std::string, std::string>> out{{"program", "scenegen " SCENEGEN_VERSION},
+    std::vector<std::pair<std::string, std::string>> out{{"program", "sceneplay " SCENEGEN_VERSION},
                                                          {"compiler", compiler()}};
     for (const auto& [key, value] : machine.items()) {
       if (key == "memoryBytes") {
