@@ -1,6 +1,6 @@
 // The light of every picture; compiled as C++ and as GLSL. Constants, and not part of the camera block: a
-// uniform is a load and a bounds check a fragment on llvmpipe (these eight made half of a town's shading
-// there).
+// uniform is a load and a bounds check a fragment on llvmpipe (a town of bricks took a tenth longer with
+// them).
 #ifndef SCENEGEN_RENDER_SHADERS_LIGHT_H
 #define SCENEGEN_RENDER_SHADERS_LIGHT_H
 

@@ -42,8 +42,7 @@ class Coverage {
   static constexpr int kColumns = 16, kRows = 9;
   static constexpr double kAll = 0.9999;
   static int first(double at) { return static_cast<int>(std::clamp(at, 0.0, 1e6)); }
-  /// ln(1 - share); of small shares by the series: nearly all are, and the logarithm took half of an
-  /// estimate.
+  /// ln(1 - share); by the series where the share is small, as nearly all are.
   static double ln_open(double share) {
     if (share < 0.01) return -share * (1.0 + share * (0.5 + share / 3.0));  // off by less than 3e-9
     return std::log1p(-std::min(share, kAll));

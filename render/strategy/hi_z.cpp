@@ -15,7 +15,7 @@
 namespace scenegen::render {
 namespace {
 
-/// Words of 64 slots that an estimate looks at; a share of the frustum of 5 % is then known within a tenth.
+/// Words of 64 slots that an estimate looks at; all of a scene of fewer.
 constexpr std::size_t kSampledWords = 128;
 
 class HiZStrategy final : public DeviceCulled {

@@ -289,6 +289,34 @@ TEST_CASE("how many different ones there are is guessed from a sample") {
   CHECK(different_among(2000, 200, count(sampled)) == Approx(count(seen)).epsilon(0.2));
 }
 
+TEST_CASE("what was seen of another picture does not make everything seen for ever") {
+  FrameFacts facts;
+  facts.visible_slots = 10'000;
+  facts.screen_pixels = 1e6;
+  facts.in_frustum = {10'000, 360'000, 40e6, 0, 0.9, 120'000};  // forty layers
+  facts.exact_inline = true;
+  FrameFacts guessed = facts;
+  Experience{}.fill_unknown(guessed, 100, {});
+  REQUIRE(guessed.seen.draws < 0.2 * facts.in_frustum.draws);
+  FrameFacts stale = facts;
+  stale.seen = facts.in_frustum;
+  stale.exact_seen = true;
+  Experience once;
+  once.learn(stale);
+  FrameFacts after = facts;
+  once.fill_unknown(after, 100, {});
+  CHECK(after.seen.draws > guessed.seen.draws);
+  CHECK(after.seen.draws < 5 * guessed.seen.draws);
+  // And it wears off, when what is seen is as was guessed.
+  FrameFacts usual = facts;
+  usual.seen = guessed.seen;
+  usual.exact_seen = true;
+  for (int i = 0; i < 20; ++i) once.learn(usual);
+  after = facts;
+  once.fill_unknown(after, 100, {});
+  CHECK(after.seen.draws == Approx(guessed.seen.draws).epsilon(0.1));
+}
+
 TEST_CASE("(3.14) what an octree that is not built would have is guessed; once seen, ratios are remembered") {
   FrameFacts facts;
   facts.screen_pixels = 1e6;

@@ -104,6 +104,29 @@ TEST_CASE("what is near the eye does not stand for hundreds of its kind") {
   CHECK(load_of_slots(scene, list.solid, screen).fragments == Approx(all).epsilon(0.5));
 }
 
+TEST_CASE("a sample of words of slots tells what is in the frustum") {
+  const Scene source = boxes_scene(20'000);
+  const timeline::Player player(timeline::compile(source));
+  const DrawScene scene(source, player, std::vector<std::uint32_t>(source.materials.size() + 1, 0));
+  const View view = look({0, 20, 30}, {10, 5, 0}, kSize);
+  const CullPlanes planes = cull_planes(frustum_of(view.clip_from_world), scene.bounds_m());
+  DrawList all;
+  list_in_frustum(scene, planes, all);
+  DrawList same;
+  sample_in_frustum(scene, planes, 1, same);
+  CHECK(same.solid == all.solid);
+  DrawList some;
+  sample_in_frustum(scene, planes, 3, some);
+  CHECK(static_cast<double>(some.tested) < 0.4 * static_cast<double>(all.tested));
+  const ScreenArea screen(view, kSize);
+  const model::Load whole = load_of_slots(scene, all.solid, screen);
+  const model::Load estimated = load_of_slots(scene, some.solid, screen, 3);
+  REQUIRE(whole.draws < 0.8 * static_cast<double>(all.tested));  // the frustum leaves something out
+  CHECK(estimated.draws == Approx(whole.draws).epsilon(0.1));
+  CHECK(estimated.vertices == Approx(whole.vertices).epsilon(0.1));
+  CHECK(estimated.fragments == Approx(whole.fragments).epsilon(0.25));
+}
+
 TEST_CASE("the ground counts once, whether the sample meets it or not") {
   for (std::size_t objects = 2000; objects < 2012; ++objects) {
     Scene source = boxes_scene(objects);
