@@ -34,6 +34,7 @@ DrawScene::DrawScene(const Scene& scene, const timeline::Player& player,
   }
   refresh_bounds();
   find_large_slots();
+  find_strata();
 }
 
 void DrawScene::find_large_slots() {
@@ -119,6 +120,21 @@ void DrawScene::build_primitives(const Scene& scene, std::span<const std::uint32
 
 void DrawScene::set_work(std::span<const DrawWork> of_geometry) {
   for (DrawPrimitive& primitive : primitives_) primitive.work = of_geometry[primitive.geometry.value];
+  find_strata();
+}
+
+void DrawScene::find_strata() {
+  strata_.clear();
+  for (std::uint32_t slot = 0; slot < solid_end_; ++slot) {
+    const DrawWork& work = primitive(slot).work;
+    const bool textured = batches_[primitive(slot).batch].state.texture_set != 0;
+    if (strata_.empty() || strata_.back().work.vertices != work.vertices ||
+        strata_.back().work.triangles != work.triangles || strata_.back().textured != textured) {
+      if (strata_.size() == kMostStrata) return strata_.clear();
+      strata_.push_back({slot, slot, work, textured});
+    }
+    strata_.back().end = slot + 1;
+  }
 }
 
 void DrawScene::build_slots(const Scene& scene) {
@@ -251,7 +267,7 @@ void DrawScene::clear_dirty() {
 
 std::uint64_t DrawScene::memory_bytes() const {
   return held_bytes(primitives_, primitives_of_mesh_, batches_, primitive_of_slot_, object_of_slot_,
-                    first_slot_of_object_, slots_by_object_, large_slots_) +
+                    first_slot_of_object_, slots_by_object_, large_slots_, strata_) +
          held_bytes(visible_object_, moving_objects_, dirty_slots_, dirty_records_) + boxes_.memory_bytes() +
          visible_.memory_bytes() + mirrored_.memory_bytes();
 }

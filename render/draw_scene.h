@@ -54,6 +54,14 @@ struct Batch {
   std::uint32_t end = 0;
 };
 
+/// Solid slots [first, end) that take the same: a sample is taken of each such part.
+struct Stratum {
+  std::uint32_t first = 0;
+  std::uint32_t end = 0;
+  DrawWork work;
+  bool textured = false;
+};
+
 /// One bit a slot, 64 slots a word.
 class BitSet {
  public:
@@ -108,6 +116,9 @@ class DrawScene {
   /// nothing of them. By their boxes at the first moment.
   [[nodiscard]] std::span<const std::uint32_t> large_slots() const { return large_slots_; }
   [[nodiscard]] bool large(std::uint32_t slot) const;
+  /// All solid slots, in order. None, where there would be more than kMostStrata: many different geometries.
+  [[nodiscard]] std::span<const Stratum> strata() const { return strata_; }
+  static constexpr std::size_t kMostStrata = 64;
   /// Box round everything where it is now, hidden or not: what shadows must reach. Like all state here it
   /// depends on the time alone, not on the frames drawn before, so that a picture does not either.
   [[nodiscard]] const Box& bounds_m() const { return bounds_m_; }
@@ -126,6 +137,7 @@ class DrawScene {
   void build_primitives(const Scene& scene, std::span<const std::uint32_t> texture_set_of_material);
   void build_slots(const Scene& scene);
   void find_large_slots();
+  void find_strata();
   void place(ObjectId id, const glm::mat4& world_from_object);
   void refresh_visibility(ObjectId id, const timeline::Player& player);
   void add_boxes_of(ObjectId id, Box& bounds_m) const;
@@ -140,6 +152,7 @@ class DrawScene {
   std::vector<std::uint32_t> first_slot_of_object_;  // into slots_by_object_; one more than objects
   std::vector<std::uint32_t> slots_by_object_;
   std::vector<std::uint32_t> large_slots_;
+  std::vector<Stratum> strata_;
   SlotBoxes boxes_;
   BitSet visible_;
   BitSet mirrored_;

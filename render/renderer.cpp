@@ -71,7 +71,8 @@ struct Renderer::State {
             options.frames_in_flight,
             options.size,
             false,
-            options.shadows && options.outputs.color};
+            options.shadows && options.outputs.color,
+            options.outputs.readback};
   }
   void predict(const timeline::ChangeSet& changes, const View& view, FrameReport& report) const;
   void finish(FrameResult& out);
@@ -303,6 +304,7 @@ void Renderer::State::predict(const timeline::ChangeSet& changes, const View& vi
   how.frames_in_flight = options.frames_in_flight;
   how.indirect_nodes = indirect_nodes(context);
   how.exact = !options.how.late_visibility;
+  how.readback = options.outputs.readback;
   for (std::size_t m = 0; m < model::kMethods; ++m)
     report.predicted[m] = model::predict(static_cast<model::Method>(m), facts, costs, how);
   report.facts = facts;

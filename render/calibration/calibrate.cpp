@@ -139,7 +139,7 @@ Result<void> measure_octrees(Runs& runs, const Run& flat, const Run& all, bool q
 
 Result<void> measure_hi_z(Runs& runs, const Run& flat, Fit& fit) {
   Result<Run> all = runs.run("hi-z", 0, false, 0.03, [](const Step& s) {
-    return s.trial == Trial::empty || s.trial == Trial::hidden_boxes;
+    return s.trial == Trial::empty || s.trial == Trial::boxes || s.trial == Trial::hidden_boxes;
   });
   if (!all) return forward_error(all);
   Result<Run> few = runs.run_few("hi-z", 0.01, [](const Step& s) { return s.trial == Trial::empty; });

@@ -78,8 +78,13 @@ void Fit::set(const char* name, Curve& curve, Curve value) {
 void Fit::empty_frame(const Run& run) {
   const Measured& empty = run.empty();
   set("emptyCpuS", c_.empty_cpu_s, empty.steady.cpu_s());
+  set("readbackCpuS", c_.readback_cpu_s, empty.steady.readback_s);
   const double device_s = Run::device_of(empty.steady);
   set("emptyDeviceS", c_.empty_device_s, device_s);
+  const double copy_ms = empty.report.gpu_stages_ms[static_cast<std::size_t>(GpuStage::readback)];
+  const bool timed =
+      empty.steady.gpu_s >= 0.0 && c_.triangle_overlap >= 0.5;  // a software device's is no clock
+  set("readbackDeviceS", c_.readback_device_s, timed ? std::clamp(copy_ms * 1e-3, 0.0, device_s) : 0.0);
   set("latencyS", c_.latency_s, empty.steady.device_s - device_s);
 }
 
@@ -99,9 +104,10 @@ void Fit::draws(const Run& run) {
   if (boxes.empty()) return;
   const model::Load& box = run.load(boxes.back());
   const double vertices = box.vertices / box.draws;
-  const double box_s = slope(run, Trial::boxes, count, [&](std::size_t i) { return run.device_s(i); });
-  box_s_ = box_s;
-  set("drawS", c_.draw_s[kPlain], Curve{{vertices}, {box_s - vertices * c_.shadow_vertex_s}});
+  box_s_ = slope(run, Trial::boxes, count, [&](std::size_t i) { return run.device_s(i); });
+  const auto specks = run.of(Trial::speck_boxes);
+  const double speck_s = specks.empty() ? box_s_ : run.device_s(specks.back()) / count(specks.back());
+  set("drawS", c_.draw_s[kPlain], Curve{{vertices}, {speck_s - vertices * c_.shadow_vertex_s}});
 }
 
 /// Time of vertices and triangles: without what their fragments and outlines cost, as far as that is not done
@@ -152,13 +158,13 @@ void Fit::meshes(const Run& run) {
   rising(plain);
   // The textured ones are measured at two sizes: between them the ratio is interpolated.
   Curve ratio;
+  const auto add_ratio = [&](std::size_t i, double plain_s) {
+    // Textures never save anything; above 10 it is noise.
+    ratio.x.push_back(vertices(i));
+    ratio.y.push_back(plain_s > 0.0 ? std::clamp(each_s(i) / plain_s, 1.0, 10.0) : 1.0);
+  };
   for (const Trial trial : {Trial::textured_boxes, Trial::textured_meshes}) {
-    for (const std::size_t i : run.of(trial)) {
-      // Textures never save anything; above 10 it is noise.
-      const double plain_s = plain.line_at(vertices(i));
-      ratio.x.push_back(vertices(i));
-      ratio.y.push_back(plain_s > 0.0 ? std::clamp(each_s(i) / plain_s, 1.0, 10.0) : 1.0);
-    }
+    for (const std::size_t i : run.of(trial)) add_ratio(i, plain.line_at(vertices(i)));
   }
   Curve textured = plain;
   for (std::size_t k = 0; k < plain.x.size() && !ratio.x.empty(); ++k) textured.y[k] *= ratio.at(plain.x[k]);
@@ -199,9 +205,11 @@ void Fit::fragments(const Run& run) {
 
 /// Boxes that lie anywhere, before and behind each other, have vertices, outlines, and fragments of which
 /// many are hidden: what outlines and hidden fragments cost, and how far all that is done side by side, are
-/// the three numbers that explain their times best.
+/// the three numbers that explain their times, and those of boxes of less than a pixel, best.
 void Fit::piles(const Run& run) {
-  const auto steps = run.of(Trial::piles);
+  std::vector<std::size_t> steps = run.of(Trial::piles);
+  const auto boxes = run.of(Trial::boxes);
+  steps.insert(steps.end(), boxes.size() > 2 ? boxes.end() - 2 : boxes.begin(), boxes.end());
   const double shade_s = c_.fragment_s[kPlain].at(1.0);
   if (steps.size() < 3 || shade_s <= 0.0) return;
   model::UnitCosts c = c_;
@@ -216,10 +224,9 @@ void Fit::piles(const Run& run) {
         const model::GpuStages s = model::device_stages(run.load(i), pixels_, c);
         const double vertices_s =
             std::max(s.state_s, s.vertices_s) + run.load(i).vertices * c.shadow_vertex_s;
-        const double measured_s = run.device_s(i) + run.load(i).screen_share * pixels_ * c.background_s;
         for (std::size_t o = 0; o < errors.size(); ++o)
           errors[o] += squared_log(model::beside_s(vertices_s, s.fragments_s, 0.1 * static_cast<double>(o)),
-                                   measured_s);
+                                   pile_s(run, i));
       }
       for (std::size_t o = 0; o < errors.size(); ++o) {
         if (errors[o] >= best) continue;
@@ -231,6 +238,35 @@ void Fit::piles(const Run& run) {
     }
   }
   for (const char* name : {"edgeS", "hiddenFragmentS", "stageOverlap"}) measured_.emplace_back(name);
+}
+
+double Fit::pile_s(const Run& run, std::size_t i) const {
+  return run.device_s(i) + run.load(i).screen_share * pixels_ * c_.background_s;
+}
+
+/// Large quads hide what textures cost where writing the picture takes longer (H200, 4 samples: 0.57 ns a
+/// fragment, with and without); along outlines, where whole quads of pixels are shaded for a part, they show.
+void Fit::textured_piles(const Run& run) {
+  const auto steps = run.of(Trial::textured_piles);
+  const double shade_s = c_.fragment_s[kTextured].at(1.0);
+  c_.textured_edge_s = c_.edge_s;
+  if (steps.empty() || shade_s <= 0.0) return;
+  model::UnitCosts c = c_;
+  double best = std::numeric_limits<double>::max();
+  constexpr int kSteps = 48;
+  for (int e = 0; e <= kSteps; ++e) {
+    c.textured_edge_s = shade_s * 24.0 * std::pow(static_cast<double>(e) / kSteps, 2.0);
+    double error = 0.0;
+    for (const std::size_t i : steps) {
+      const model::GpuStages s = model::device_stages(run.load(i), pixels_, c);
+      const double vertices_s = std::max(s.state_s, s.vertices_s) + run.load(i).vertices * c.shadow_vertex_s;
+      error += squared_log(model::beside_s(vertices_s, s.fragments_s, c.stage_overlap), pile_s(run, i));
+    }
+    if (error >= best) continue;
+    best = error;
+    c_.textured_edge_s = c.textured_edge_s;
+  }
+  measured_.emplace_back("texturedEdgeS");
 }
 
 void Fit::overlaps(const Run& run) {
@@ -251,6 +287,7 @@ void Fit::inline_run(const Run& run) {
   piles(run);
   triangles(run);
   meshes(run);
+  textured_piles(run);
   overlaps(run);
 }
 
@@ -495,6 +532,22 @@ void Fit::hi_z(const Run& flat, const Run& all, const Run& few) {
   }
   if (draws.size() >= 2) set("hiZSlotS", c_.hi_z_slot_s, fit_line(draws, device_s).slope);
   set("hiZCpuS", c_.hi_z_cpu_s, all.empty().steady.record_s - flat.empty().steady.record_s);
+  instances(flat, all);
+}
+
+/// Boxes of a block are instances of one command: what that saves against a command each. (A GPU may take as
+/// long for an instance of few vertices as for a draw of them.)
+void Fit::instances(const Run& flat, const Run& all) {
+  const auto count = [](const Run& run) {
+    return [&run](std::size_t i) { return static_cast<double>(run.step(i).draws); };
+  };
+  const auto boxes = all.of(Trial::boxes);
+  if (boxes.size() < 2) return;
+  const double each_s = slope(all, Trial::boxes, count(all), [&](std::size_t i) { return all.device_s(i); });
+  const double alone_s =
+      slope(flat, Trial::boxes, count(flat), [&](std::size_t i) { return flat.device_s(i); });
+  set("instanceSavesS", c_.instance_saves_s,
+      std::clamp(alone_s - (each_s - c_.hi_z_slot_s), 0.0, c_.draw_s[kPlain].line_at(0.0)));
 }
 
 void Fit::indirect(const Run& flat, const Run& fine, const Run& coarse) {

@@ -70,6 +70,10 @@ class Fit {
   void fragments(const Run& run);
   void triangles(const Run& run);
   void piles(const Run& run);
+  void textured_piles(const Run& run);
+  void instances(const Run& flat, const Run& all);
+  /// Device time of a pile, with the sky that it covers.
+  [[nodiscard]] double pile_s(const Run& run, std::size_t i) const;
   void overlaps(const Run& run);
   void meshes(const Run& run);
   void walking(const std::vector<Octrees>& runs);

@@ -30,6 +30,7 @@ bool from_empty(Trial trial) {
     case Trial::thinned_boxes:
     case Trial::refilled_boxes:
       return true;
+    case Trial::speck_boxes:
     case Trial::textured_boxes:
     case Trial::unshared_meshes:
     case Trial::meshes:
@@ -37,6 +38,7 @@ bool from_empty(Trial trial) {
     case Trial::layers:
     case Trial::textured_layers:
     case Trial::piles:
+    case Trial::textured_piles:
       break;
   }
   return false;

@@ -15,6 +15,7 @@ namespace scenegen::render::calibration {
 enum class Trial : std::uint8_t {
   empty,            ///< nothing
   boxes,            ///< `draws` boxes of less than a pixel, all in view (D: boxes in growing number)
+  speck_boxes,      ///< `draws` boxes so small that they have no fragments
   textured_boxes,   ///< the same with textures: base colour and normals
   unshared_meshes,  ///< a triangle; spheres of `vertices` each whose triangles share none (D: growing
                     ///< batchSize)
@@ -23,6 +24,7 @@ enum class Trial : std::uint8_t {
   layers,           ///< `layers` quads over `share` of the picture, every one in front of those before
   textured_layers,  ///< the same with textures
   piles,            ///< `draws` boxes anywhere over `share` of the picture, `layers` deep, in any order
+  textured_piles,   ///< the same with textures
   hidden_boxes,     ///< a wall over the whole picture with `draws` boxes behind it
   halved_boxes,     ///< `draws` boxes, half of them beside the picture
   thinned_boxes,    ///< the most `boxes` without every kThinned-th; come to from them
@@ -62,7 +64,7 @@ struct TestSizes {
   std::uint32_t mesh_vertices = 0;      ///< of all meshes of a step together
   std::vector<double> shares;           ///< of the picture, as D: 1, 3/4, 1/2, 1/4, 1/8, 1/16
   std::uint32_t layers = 4;
-  std::vector<double> piles;  ///< how deep, ascending
+  std::vector<double> piles, textured_piles;  ///< how deep, ascending
 };
 
 /// What 2.5.4 and 4.2 ask for, for pictures of `size`. `quick`: fewer sizes.

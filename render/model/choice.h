@@ -21,9 +21,12 @@ struct Sides {
 /// machine (others may use it too) and one of the way of drawing. What drifts while a way is taken is the
 /// machine's, and holds for all ways; what jumps when a way is taken is its own. So a way that is not taken
 /// keeps its relation to the others, and one that never was has the factor of its nearest relative. The
-/// product stays in [1/2, 2].
+/// product stays in [1/2, 2]. A device that is no processor is hardly shared, and has a clock of its own:
+/// what drifts there is mostly that a scene grows beyond what the unit costs were measured on, and more than
+/// half of it is the way's own.
 class Correction {
  public:
+  explicit Correction(bool device_shared = true) : device_shared_(device_shared) {}
   /// A frame drawn by `method`; `since_change`: frames since another way was taken. `taken` < 0: not
   /// measured.
   void measured(Method method, std::uint32_t since_change, const Sides& predicted, const Sides& taken);
@@ -36,11 +39,12 @@ class Correction {
     double machine = 0;                  // ln
     std::array<double, kMethods> own{};  // ln
   };
-  void learn(Side& side, Method method, bool fresh, double ratio) const;
+  void learn(Side& side, Method method, bool fresh, bool shared, double ratio) const;
   [[nodiscard]] double factor(const Side& side, Method method) const;
   /// Itself, if it was measured.
   [[nodiscard]] Method known_relative(Method method) const;
 
+  bool device_shared_;
   Side cpu_, gpu_;
   std::array<std::uint32_t, kMethods> frames_{};  // measured
 };
@@ -77,10 +81,12 @@ struct Verdict {
 [[nodiscard]] std::string in_words(const Verdict& verdict);
 
 struct ChoiceOptions {
-  double margin = 0.03;        ///< another way must take less by this share
-  double frames = 3;           ///< for so many frames in a row
-  double horizon_frames = 60;  ///< and pay back its change within so many, or have missed as much already
-  double trial_share = 0.01;   ///< of the time goes into trials at most; 0: none
+  double margin = 0.03;  ///< another way must take less by this share
+  double frames = 3;     ///< for so many frames in a row
+  double at_once = 0.4;  ///< or by this share at once, trial or not: the camera was cut to something else
+  double penalty_frames = 0.25;  ///< or so many frames' time missed, for each change soon after another
+  double horizon_frames = 60;    ///< and pay back its change within so many, or have missed as much already
+  double trial_share = 0.01;     ///< of the time goes into trials at most; 0: none
   /// And so many frames' time in advance. Without it, building an octree of 200 000 objects for a first trial
   /// (60 ms) is put off for 800 frames of 8 ms.
   double advance_frames = 12;
@@ -91,8 +97,8 @@ struct ChoiceOptions {
   double trial_again_frames = 600;  ///< a way is tried again after so many
 };
 
-/// Hysteresis, and trials. A change soon after a change doubles what the next has to bring (up to 16 times),
-/// which wears off.
+/// Hysteresis, and trials. A change soon after a change doubles what has to be missed before the next (up to
+/// 15 times penalty_frames), which wears off.
 class Choice {
  public:
   explicit Choice(const ChoiceOptions& options = {}) : options_(options) {}
@@ -125,6 +131,7 @@ class Choice {
   [[nodiscard]] std::optional<Reason> objection(const Offer& now, const Offer& other, std::size_t number,
                                                 double elapsed);
   void pass(double elapsed, double frame_s);
+  [[nodiscard]] bool far_better(const Offer& other, const Offer& now) const;
   /// A trial that lasted long enough to be judged, and loses.
   [[nodiscard]] bool trial_lost(const Offer& now, const Offer& best) const;
 

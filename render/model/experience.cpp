@@ -95,6 +95,7 @@ void Experience::fill_seen(FrameFacts& f) const {
   }
   // What is seen is nearer than what is not: it has more than its share of the fragments.
   f.seen.textured_share = f.in_frustum.textured_share;
+  f.seen.textured_fragment_share = f.in_frustum.textured_fragment_share;
   f.seen.screen_share = f.in_frustum.screen_share;
   const double share_seen = share(f.seen.draws, f.in_frustum.draws);
   f.seen.fragments =

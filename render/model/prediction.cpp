@@ -44,6 +44,10 @@ Load without(Load load, const Load& part) {
   return load;
 }
 
+double textured_fragments(const Load& load) {
+  return load.textured_fragment_share < 0.0 ? load.textured_share : load.textured_fragment_share;
+}
+
 Load together(const Load& a, const Load& b) {
   Load sum = a;
   sum.draws += b.draws;
@@ -53,6 +57,9 @@ Load together(const Load& a, const Load& b) {
   sum.fragments += b.fragments;
   if (sum.draws > 0.0)
     sum.textured_share = (a.draws * a.textured_share + b.draws * b.textured_share) / sum.draws;
+  if (sum.fragments > 0.0)
+    sum.textured_fragment_share =
+        (a.fragments * textured_fragments(a) + b.fragments * textured_fragments(b)) / sum.fragments;
   if (a.screen_share > 0.0 && b.screen_share > 0.0)
     sum.screen_share = 1.0 - (1.0 - a.screen_share) * (1.0 - b.screen_share);
   return sum;
@@ -204,17 +211,19 @@ GpuStages device_stages(const Load& load, double screen_pixels, const UnitCosts&
   const double per_draw = load.vertices / load.draws;
   const std::array vertices{
       Work{load.draws, mixed(c.draw_s, load.textured_share, &Curve::line_at, per_draw)}};
-  const double instances_save_s = (load.draws - commands) * command_s(load, c);
+  const double instances_save_s = (load.draws - commands) * std::min(c.instance_saves_s, command_s(load, c));
   out.vertices_s =
       beside_s(work_s(vertices) - instances_save_s, load.triangles * c.triangle_s, c.triangle_overlap);
   const Shaded s = shaded_fragments(load, screen_pixels);
-  const double shade_s = mixed(c.fragment_s, load.textured_share, &Curve::at, s.covered_share);
+  const double shade_s = mixed(c.fragment_s, textured_fragments(load), &Curve::at, s.covered_share);
   const std::array fragments{Work{s.shaded, shade_s}, Work{s.hidden, c.hidden_fragment_s}};
   out.fragments_s = work_s(fragments);
   // Costs in proportion to what the fragments themselves do: hidden ones are not shaded.
   const double plain_s = c.fragment_s[static_cast<std::size_t>(Shading::plain)].at(s.covered_share);
+  const double textured = textured_fragments(load);
+  const double edge_s = (1.0 - textured) * c.edge_s + textured * c.textured_edge_s;
   if (plain_s > 0.0 && load.fragments > 0.0)
-    out.fragments_s += c.edge_s * outlines(load) * out.fragments_s / (plain_s * load.fragments);
+    out.fragments_s += edge_s * outlines(load) * out.fragments_s / (plain_s * load.fragments);
   return out;
 }
 
@@ -253,7 +262,11 @@ Prediction predict(Method method, const FrameFacts& f, const UnitCosts& c, const
     if (taken.hidden > 0.0) p.queries_cpu_s += c.second_part_cpu_s;
   }
   p.shadows_cpu_s = f.shadow_slots * c.shadow_slot_s;
-  p.cpu_s = c.empty_cpu_s + p.update_s + p.update_octree_s + p.cull_s + p.record_s + p.secondaries_s +
+  const double empty_cpu_s =
+      c.empty_cpu_s - (options.readback ? 0.0 : std::min(c.readback_cpu_s, c.empty_cpu_s));
+  const double empty_device_s =
+      c.empty_device_s - (options.readback ? 0.0 : std::min(c.readback_device_s, c.empty_device_s));
+  p.cpu_s = empty_cpu_s + p.update_s + p.update_octree_s + p.cull_s + p.record_s + p.secondaries_s +
             p.queries_cpu_s + p.shadows_cpu_s;
 
   const Load all = together(taken.drawn, f.blended);
@@ -273,7 +286,7 @@ Prediction predict(Method method, const FrameFacts& f, const UnitCosts& c, const
     p.query_device_s = c.hi_z_device_s + f.hi_z_blocks * c.hi_z_block_s + f.visible_slots * c.hi_z_slot_s;
   const double sky_s =
       shaded_fragments(all, f.screen_pixels).covered_share * f.screen_pixels * c.background_s;
-  p.gpu_s = std::max(0.0, c.empty_device_s - sky_s) + p.shadows_device_s + p.draw_device_s + p.query_device_s;
+  p.gpu_s = std::max(0.0, empty_device_s - sky_s) + p.shadows_device_s + p.draw_device_s + p.query_device_s;
   p.frame_s = frame_s(p.cpu_s, p.gpu_s, options.frames_in_flight, t);
   if (options.frames_in_flight <= 1) p.frame_s -= c.send_overlap * std::min(p.secondaries_s, p.gpu_s);
   return p;

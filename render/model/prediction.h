@@ -32,7 +32,8 @@ struct Load {
   double textured_share = 0;  ///< of draws
   double screen_share = 0;    ///< of the screen's pixels that end up covered, at most 1; 0: not known
   double triangles = 0;
-  double commands = 0;  ///< that draw them, several being instances of one; 0: one each
+  double commands = 0;                  ///< that draw them, several being instances of one; 0: one each
+  double textured_fragment_share = -1;  ///< of fragments; below 0: as of draws
 };
 
 /// Counts of one frame. Those of the way that was taken are exact; the others are estimates (`exact` says
@@ -102,6 +103,7 @@ struct PredictionOptions {
   std::uint32_t frames_in_flight = 2;
   bool exact = true;            ///< queries: hidden chunks are recorded and executed under a predicate
   bool indirect_nodes = false;  ///< chunks as indirect draws with a count instead of secondaries
+  bool readback = true;         ///< the picture is copied out
 };
 
 /// How many of `load`'s fragments are shaded when they come in random order: of k layers over a pixel the

@@ -54,7 +54,8 @@ UnitCosts rough_costs(bool software_device) {
   c.node_command_device_s = software_device ? 2e-6 : 0.3e-6;
   c.indirect_draw_s = software_device ? 1.3e-6 : 14e-9;
   c.skipped_draw_s = software_device ? 110e-9 : 10e-9;
-  c.edge_s = software_device ? 1e-6 : 0.0;
+  c.edge_s = c.textured_edge_s = software_device ? 1e-6 : 0.0;
+  c.instance_saves_s = software_device ? 1.3e-6 : 0.0;
   c.background_s = software_device ? 5e-9 : 10e-12;
   c.query_s = software_device ? 10e-6 : 0.05e-6;
   c.seen_query_s = software_device ? 0.0 : 0.15e-6;

@@ -48,13 +48,16 @@ struct UnitCosts {
   double hi_z_cpu_s = 0;         ///< culling on the device: recording it, all draws included
   double shadow_slot_s = 0;      ///< walking and drawing one slot that casts a shadow
   double empty_cpu_s = 0;        ///< T_0: a frame with nothing in it, copying its picture out included
+  double readback_cpu_s = 0;     ///< of it, that copying
 
   // Device.
   std::array<Curve, kShadings>
       draw_s;  ///< t_state, t_vert: one draw, by vertices shaded in it (line_at), hardly a fragment
+  double instance_saves_s = 0;  ///< against a draw of its own, one of several instances of a command
   double triangle_s = 0;  ///< and each triangle of it, beside its vertices as far as triangle_overlap says
   std::array<Curve, kShadings> fragment_s;  ///< t_frag: one fragment, by the share of the screen covered (at)
   double edge_s = 0;                        ///< what outlines of triangles add to t_frag, by outlines()
+  double textured_edge_s = 0;               ///< and those of textured ones
   double hidden_fragment_s = 0;             ///< one that fails the depth test, of things among others
   double background_s = 0;                  ///< one of the sky: part of T_0 that whatever covers it saves
   double secondary_device_s = 0;            ///< t_state: executing a kept command buffer, beside its draws
@@ -69,7 +72,8 @@ struct UnitCosts {
   double hi_z_block_s = 0;          ///< a block of slots: its workgroups, and commands that draw nothing
   double hi_z_slot_s = 0;           ///< a slot that is visible by timeline: its tests
   double shadow_vertex_s = 0;       ///< one vertex in the shadow map's pass
-  double empty_device_s = 0;        ///< T_0
+  double empty_device_s = 0;        ///< T_0, copying the picture to where it is read included
+  double readback_device_s = 0;     ///< of it, that copying
 
   // What the driver holds, bytes.
   double secondary_bytes = 0;  ///< M_sec: a kept command buffer by itself

@@ -14,6 +14,7 @@
 #include "render/strategy/device_culled.h"
 #include "render/strategy/estimate_load.h"
 #include "render/strategy/octree_choice.h"
+#include "render/strategy/picture.h"
 #include "render/strategy/touched_chunks.h"
 
 namespace scenegen::render {
@@ -41,6 +42,8 @@ constexpr double kIdleShare = 0.7;
 constexpr std::size_t kSlice = 2048;  ///< slots between two looks at the clock
 /// No more slots than these are behind: the rest is done at once when the octree is taken.
 constexpr std::size_t kNearlyDone = 4096;
+/// Fewer levels of changes in a frame say nothing of what one takes.
+constexpr double kFewLevels = 500;
 /// So near to being cheaper, the octree is built and kept up to date though it is not taken.
 constexpr double kNear = 1.2;
 /// Frames after a change that say nothing about steady state: commands are recorded for the first time.
@@ -90,8 +93,10 @@ class Adaptive final : public Strategy {
   [[nodiscard]] Strategy& taken() const { return strategy_of(way_); }
   [[nodiscard]] model::Method method_of(Way way, const model::FrameFacts& facts) const;
   [[nodiscard]] double idle_s() const;
-  [[nodiscard]] bool due() const;
+  [[nodiscard]] bool due(const View& view) const;
   void learn_of_last_frame();
+  void learn_update(double measured_s, double levels, double chunks, double slots);
+  [[nodiscard]] model::Sides sides_of(model::Method method, const model::FrameFacts& facts) const;
   void gather(const View& view);
   void make_offers();
   [[nodiscard]] double frame_s(const model::Sides& sides) const;
@@ -117,13 +122,16 @@ class Adaptive final : public Strategy {
   model::PredictionOptions predicting_;
 
   model::Choice choice_;
-  model::Correction correction_;
+  model::Correction correction_;  // a software device shares its processors with everything else
   model::Experience experience_;
   ChunksTouched touched_;
   model::SlowMean changed_{64}, recorded_chunks_{4}, changed_chunks_{4}, left_chunks_{4};
   // By the tree, while it draws.
   model::SlowMean rerecorded_draws_{256}, refreshed_chunks_{4}, refreshed_slots_{256};
   double last_changed_ = 0;
+  double update_tree_s_ = 0;                           // in this frame
+  double planned_update_s_ = 0, planned_changed_ = 0;  // in the last one
+  double update_ln_ = 0;                               // T_upd(H), measured / by its units
 
   model::FrameFacts exact_;  // at the last decision: what the present way found
   model::FrameFacts facts_;  // the same in steady state, with guesses for the other
@@ -134,6 +142,7 @@ class Adaptive final : public Strategy {
 
   std::uint64_t frame_ = 0;
   std::uint64_t decided_frame_ = 0;
+  Picture decided_picture_;
   std::uint32_t since_change_ = 1000;
   double choose_s_ = 0;                 // mean
   double cpu_s_ = 2e-3, gpu_s_ = 2e-3;  // means of what frames took
@@ -148,6 +157,7 @@ Adaptive::Adaptive(const StrategyContext& context)
     : context_(context),
       flat_(make_inline(context)),
       per_node_(choose_objects_per_node(context).value_or(kObjectsPerNode)),
+      correction_(context.device.info.type == "CPU"),
       touched_(context.scene, per_node_) {
   StrategyContext in_slices = context;
   in_slices.octree_in_slices = true;
@@ -160,6 +170,7 @@ Adaptive::Adaptive(const StrategyContext& context)
   predicting_.frames_in_flight = context.frames_in_flight;
   predicting_.indirect_nodes = indirect_nodes(context);
   predicting_.exact = !context.options.late_visibility;
+  predicting_.readback = context.readback;
   report_.used = "inline";
   forward();
 }
@@ -167,7 +178,9 @@ Adaptive::Adaptive(const StrategyContext& context)
 void Adaptive::update(const timeline::ChangeSet& changes) {
   flat_->update(changes);
   device_->update(changes);
+  const auto start = Clock::now();
   way_ == tree ? tree_->update(changes) : tree_->note(changes);
+  update_tree_s_ = way_ == tree ? seconds_since(start) : 0.0;
   last_changed_ = static_cast<double>(changes.count());
   changed_.add(last_changed_);
   const model::TouchedChunks touched = touched_.count(changes);
@@ -182,9 +195,10 @@ double Adaptive::idle_s() const {
   return std::max(0.0, gpu_s_ - cpu_s_);
 }
 
-/// As often as the choice keeps to its share of a frame.
-bool Adaptive::due() const {
-  if (frame_ <= 2) return true;
+/// As often as the choice keeps to its share of a frame; at once after a seek or a cut.
+bool Adaptive::due(const View& view) const {
+  if (frame_ <= 2 || !alike(decided_picture_, picture_of(view, context_.scene), context_.scene.bounds_m()))
+    return true;
   const double share_s =
       (choice_.in_trial() ? kChooseShareInTrial : kChooseShare) * std::max(1e-6, frame_s({cpu_s_, gpu_s_}));
   return static_cast<double>(frame_ - decided_frame_) >=
@@ -195,6 +209,8 @@ void Adaptive::plan(const View& view) {
   ++frame_;
   ++since_change_;
   learn_of_last_frame();
+  planned_update_s_ = update_tree_s_;
+  planned_changed_ = last_changed_;
   // Memory ran out while it drew.
   if ((way_ == tree && !tree_->available()) || (way_ == device && !device_->available())) way_ = flat;
   taken().plan(view);
@@ -204,7 +220,7 @@ void Adaptive::plan(const View& view) {
     force(view);
   } else {
     if (way_ != tree && (preparing_ || near())) prepare();
-    if (due() || (preparing_ && nearly_done())) {
+    if (due(view) || (preparing_ && nearly_done())) {
       const auto start = Clock::now();
       gather(view);
       make_offers();
@@ -223,9 +239,24 @@ void Adaptive::plan(const View& view) {
 
 void Adaptive::learn_of_last_frame() {
   if (way_ != tree || passes_ == 0 || since_change_ <= kSettling) return;
+  const PlanCounters& counted = tree_->counters();
+  learn_update(planned_update_s_, planned_changed_ * std::max(1.0, facts_.height),
+               static_cast<double>(counted.refreshed_chunks), static_cast<double>(counted.refreshed_slots));
   rerecorded_draws_.add(tree_->rerecorded_draws());
   refreshed_chunks_.add(static_cast<double>(tree_->counters().refreshed_chunks));
   refreshed_slots_.add(static_cast<double>(tree_->counters().refreshed_slots));
+}
+
+/// T_upd(H) against what its units say. They come from boxes that appear in order; in a town whose bricks
+/// appear anywhere, out of the processor's caches, it is four times as much, and no other stage is (H200's
+/// machine: 5500 changes a frame, 2.0 ms instead of 0.5).
+void Adaptive::learn_update(double measured_s, double levels, double chunks, double slots) {
+  const model::UnitCosts& costs = context_.costs;
+  const double predicted_s =
+      levels * costs.intersect_s + chunks * costs.refresh_chunk_s + slots * costs.refresh_slot_s;
+  if (levels < kFewLevels || predicted_s <= 0.0 || measured_s <= 0.0) return;
+  const double ln = std::log(std::clamp(measured_s / predicted_s, 0.25, 16.0));
+  if (context_.options.correction) update_ln_ += 0.2 * (ln - update_ln_);
 }
 
 /// What there is to do in this frame, in all ways. The present way has planned it.
@@ -292,17 +323,20 @@ double Adaptive::frame_s(const model::Sides& sides) const {
 double Adaptive::change_to_tree_s() const {
   const model::UnitCosts& costs = context_.costs;
   const auto pending = static_cast<double>(tree_->pending());
-  return pending * std::max(1.0, facts_.height) * costs.intersect_s +
-         std::min(facts_.visible_slots, 0.7 * per_node_ * pending) * costs.refresh_slot_s +
+  return std::exp(update_ln_) *
+             (pending * std::max(1.0, facts_.height) * costs.intersect_s +
+              std::min(facts_.visible_slots, 0.7 * per_node_ * pending) * costs.refresh_slot_s) +
          stale_draws_ * costs.record_kept_s;
+}
+
+model::Sides Adaptive::sides_of(model::Method method, const model::FrameFacts& facts) const {
+  const model::Prediction p = model::predict(method, facts, context_.costs, predicting_);
+  return {p.cpu_s + (std::exp(update_ln_) - 1.0) * p.update_octree_s, p.gpu_s};
 }
 
 void Adaptive::make_offers() {
   using model::Method;
-  const auto sides = [&](Method method) {
-    const model::Prediction p = model::predict(method, facts_, context_.costs, predicting_);
-    return model::Sides{p.cpu_s, p.gpu_s};
-  };
+  const auto sides = [&](Method method) { return sides_of(method, facts_); };
   const auto corrected = [&](Method method, const model::Sides& raw) {
     return frame_s(context_.options.correction ? correction_.corrected(method, raw) : raw);
   };
@@ -328,6 +362,7 @@ void Adaptive::make_offers() {
 void Adaptive::decide(const View& view) {
   const auto elapsed = static_cast<std::uint32_t>(frame_ - decided_frame_);
   decided_frame_ = frame_;
+  decided_picture_ = picture_of(view, context_.scene);
   const auto start = Clock::now();
   const model::Choice::Decision decision =
       choice_.decide(offers_, way_, elapsed, context_.options.correction ? &correction_ : nullptr);
@@ -346,8 +381,11 @@ void Adaptive::decide(const View& view) {
 void Adaptive::prepare() {
   const double budget_s = std::max(kPrepareShare * frame_s({cpu_s_, gpu_s_}), kIdleShare * idle_s());
   const auto start = Clock::now();
+  const std::size_t pending = tree_->pending();
   while (!tree_->catch_up(kSlice) && seconds_since(start) < budget_s) {
   }
+  const auto done = static_cast<double>(pending - std::min(pending, tree_->pending()));
+  if (built_) learn_update(seconds_since(start), done * std::max(1.0, facts_.height), 0.0, 0.0);
   built_ = built_ || nearly_done();
 }
 
@@ -389,13 +427,15 @@ void Adaptive::expect() {
   now.changed = last_changed_;
   const model::Method method = method_of(way_, now);
   if (way_ == device) now.seen = facts_.seen;  // of which a part is always guessed
-  const model::Prediction p = model::predict(method, now, context_.costs, predicting_);
-  drawn_[frame_ % drawn_.size()] = {frame_,
-                                    way_,
-                                    method,
-                                    since_change_,
-                                    since_change_ >= kSettling && !preparing_ && frame_ > kSettling,
-                                    {p.cpu_s, p.gpu_s}};
+  // A guess of what is seen that is wrong is no fault of the unit costs: Experience learns it.
+  const bool guessed = way_ == device && !facts_.exact_seen && facts_.in_frustum.draws > 0.0;
+  drawn_[frame_ % drawn_.size()] = {
+      frame_,
+      way_,
+      method,
+      since_change_,
+      since_change_ >= kSettling && !preparing_ && frame_ > kSettling && !guessed,
+      sides_of(method, now)};
 }
 
 void Adaptive::draw_solid(PassRecording& pass) {

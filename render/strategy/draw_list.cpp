@@ -32,18 +32,6 @@ void list_in_frustum(const DrawScene& scene, const CullPlanes& planes, DrawList&
   }
 }
 
-void sample_in_frustum(const DrawScene& scene, const CullPlanes& planes, std::size_t every, DrawList& out) {
-  out.clear();
-  const auto words = scene.visible().words();
-  out.inside.assign(words.size(), 0);
-  for (std::size_t w = every / 2; w < words.size(); w += every) out.inside[w] = words[w];
-  cull_boxes(scene.boxes(), planes, out.inside, out.inside);
-  for (std::size_t w = every / 2; w < words.size(); w += every) {
-    out.tested += static_cast<std::uint64_t>(std::popcount(words[w]));
-    emit(scene, w, out.inside[w], out);
-  }
-}
-
 void list_blended_in_frustum(const DrawScene& scene, const CullPlanes& planes, DrawList& out) {
   out.clear();
   const auto words = scene.visible().words();

@@ -32,8 +32,6 @@ struct DrawList {
 void list_visible(const DrawScene& scene, DrawList& out);
 /// What of it touches the frustum; never misses anything (boxes and planes carry slack for rounding).
 void list_in_frustum(const DrawScene& scene, const CullPlanes& planes, DrawList& out);
-/// A sample of that: of one word of slots (64 neighbours) in `every`.
-void sample_in_frustum(const DrawScene& scene, const CullPlanes& planes, std::size_t every, DrawList& out);
 /// Only the blended part of what touches the frustum.
 void list_blended_in_frustum(const DrawScene& scene, const CullPlanes& planes, DrawList& out);
 /// Adds solid slots given as bits, in slot order.

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "render/strategy/draw_list.h"
+
 namespace scenegen::render {
 namespace {
 
@@ -62,52 +64,72 @@ class Sample {
   Sample(const DrawScene& scene, const ScreenArea& screen, bool all)
       : scene_(scene), screen_(screen), all_(all) {}
 
-  /// Large slots do not stand for others: of a sample they are left out, and counted one by one.
-  void add(std::uint32_t slot) {
+  /// Large slots do not stand for others: of a sample they are left out, and counted one by one. `weight`:
+  /// against others of the sample.
+  void add(std::uint32_t slot, double weight = 1.0) {
     const DrawPrimitive& primitive = scene_.primitive(slot);
     if (!all_ && scene_.large(slot)) return;
-    spots_[taken_++] = {screen_.spot(scene_.boxes().get(slot)), primitive.work.covered_share};
-    vertices_ += primitive.work.vertices;
-    triangles_ += primitive.work.triangles;
-    textured_ += scene_.batches()[primitive.batch].state.texture_set != 0 ? 1.0 : 0.0;
+    spots_[taken_++] = {screen_.spot(scene_.boxes().get(slot)), primitive.work.covered_share, weight,
+                        textured(slot)};
+    weights_ += weight;
+    vertices_ += weight * primitive.work.vertices;
+    triangles_ += weight * primitive.work.triangles;
+    textured_ += textured(slot) ? weight : 0.0;
   }
 
   [[nodiscard]] double vertices() const { return vertices_; }
   [[nodiscard]] double triangles() const { return triangles_; }
-  [[nodiscard]] model::Load scaled(std::size_t draws) const {
+  [[nodiscard]] model::Load scaled(double draws) const {
     model::Load load;
     if (taken_ == 0) return load;
-    load.draws = static_cast<double>(draws);
-    const double scale = load.draws / static_cast<double>(taken_);
+    load.draws = draws;
+    const double scale = draws / weights_;
     load.vertices = scale * vertices_;
     load.triangles = scale * triangles_;
-    load.textured_share = textured_ / static_cast<double>(taken_);
+    load.textured_share = textured_ / weights_;
     Coverage coverage(screen_);
+    double textured_fragments = 0.0;
     for (std::size_t i = 0; i < taken_; ++i) {
-      const auto& [spot, filled] = spots_[i];
+      const auto& [spot, filled, weight, textured] = spots_[i];
       // What fills the picture because it is near stands for itself, not for hundreds of its kind.
-      const double like = std::min(
-          scale, std::max(1.0, kDeepest * screen_.pixels() / std::max(1.0, filled * spot.fragments())));
-      load.fragments += like * coverage.add(spot, filled, like);
+      const double like =
+          std::min(scale * weight,
+                   std::max(1.0, kDeepest * screen_.pixels() / std::max(1.0, filled * spot.fragments())));
+      const double fragments = like * coverage.add(spot, filled, like);
+      load.fragments += fragments;
+      if (textured) textured_fragments += fragments;
     }
     if (!all_) {
       for (const std::uint32_t slot : scene_.large_slots()) {
-        if (scene_.visible().test(slot))
-          load.fragments += coverage.add(screen_.spot(scene_.boxes().get(slot)),
-                                         scene_.primitive(slot).work.covered_share, 1.0);
+        if (!scene_.visible().test(slot)) continue;
+        const double fragments = coverage.add(screen_.spot(scene_.boxes().get(slot)),
+                                              scene_.primitive(slot).work.covered_share, 1.0);
+        load.fragments += fragments;
+        if (textured(slot)) textured_fragments += fragments;
       }
     }
     load.screen_share = coverage.share();
+    if (load.fragments > 0.0) load.textured_fragment_share = textured_fragments / load.fragments;
     return load;
   }
 
  private:
+  struct Seen {
+    ScreenArea::Spot spot;
+    double filled = 0;
+    double weight = 1;
+    bool textured = false;
+  };
+  [[nodiscard]] bool textured(std::uint32_t slot) const {
+    return scene_.batches()[scene_.primitive(slot).batch].state.texture_set != 0;
+  }
+
   const DrawScene& scene_;
   const ScreenArea& screen_;
   bool all_;
   std::size_t taken_ = 0;
-  double vertices_ = 0, triangles_ = 0, textured_ = 0;
-  std::array<std::pair<ScreenArea::Spot, double>, kSampledSlots> spots_;  // no memory is asked for in a frame
+  double weights_ = 0, vertices_ = 0, triangles_ = 0, textured_ = 0;
+  std::array<Seen, kSampledSlots> spots_;  // no memory is asked for in a frame
 };
 
 /// The middles of kSampledSlots equal parts of `count` things; all of them when there are no more.
@@ -121,6 +143,26 @@ class Steps {
 
  private:
   std::size_t count_, parts_, part_ = 0;
+};
+
+/// What slots of strata take.
+class Exact {
+ public:
+  void add(const Stratum& stratum, double draws) {
+    draws_ += draws;
+    vertices_ += draws * stratum.work.vertices;
+    triangles_ += draws * stratum.work.triangles;
+    if (stratum.textured) textured_ += draws;
+  }
+  [[nodiscard]] model::Load into(model::Load load) const {
+    load.vertices = vertices_;
+    load.triangles = triangles_;
+    if (draws_ > 0.0) load.textured_share = textured_ / draws_;
+    return load;
+  }
+
+ private:
+  double draws_ = 0, vertices_ = 0, triangles_ = 0, textured_ = 0;
 };
 
 /// What octrees know of chunks.
@@ -137,6 +179,14 @@ Sums sums_of(const Octree& tree, std::span<const std::uint32_t> chunks) {
     all.triangles += static_cast<double>(content.triangles);
   }
   return all;
+}
+
+/// Bits of a word that are slots of a stratum.
+std::uint64_t bits_of(const Stratum& stratum, std::span<const std::uint64_t> words, std::size_t word) {
+  std::uint64_t bits = words[word];
+  if (stratum.first > 64 * word) bits &= ~std::uint64_t{0} << (stratum.first - 64 * word);
+  if (stratum.end < 64 * word + 64) bits &= ~(~std::uint64_t{0} << (stratum.end - 64 * word));
+  return bits;
 }
 
 std::uint64_t solid_bits(const DrawScene& scene, std::size_t word) {
@@ -205,11 +255,99 @@ ScreenArea::Spot ScreenArea::spot(const Box& box) const {
 }
 
 model::Load load_of_slots(const DrawScene& scene, std::span<const std::uint32_t> slots,
-                          const ScreenArea& screen, std::size_t each_stands_for) {
+                          const ScreenArea& screen) {
   const bool solid = !slots.empty() && slots.front() < scene.solid_end();
-  Sample sample(scene, screen, each_stands_for == 1 && (!solid || slots.size() <= kSampledSlots));
+  Sample sample(scene, screen, !solid || slots.size() <= kSampledSlots);
   for (Steps steps(slots.size()); steps.below(slots.size()); steps.next()) sample.add(slots[steps.at()]);
-  return sample.scaled(slots.size() * each_stands_for);
+  model::Load load = sample.scaled(static_cast<double>(slots.size()));
+  if (!solid || scene.strata().empty()) return load;
+  const bool ascending = slots.front() <= slots.back();
+  const auto before = [&](std::uint32_t end) {
+    return ascending
+               ? std::lower_bound(slots.begin(), slots.end(), end) - slots.begin()
+               : slots.end() - std::lower_bound(slots.begin(), slots.end(), end,
+                                                [](std::uint32_t a, std::uint32_t b) { return a >= b; });
+  };
+  Exact exact;
+  std::ptrdiff_t passed = 0;
+  for (const Stratum& stratum : scene.strata()) {
+    const std::ptrdiff_t end = before(stratum.end);
+    exact.add(stratum, static_cast<double>(end - passed));
+    passed = end;
+  }
+  return exact.into(load);
+}
+
+model::Load estimated_in_frustum(const DrawScene& scene, const CullPlanes& planes, const ScreenArea& screen,
+                                 DrawList& scratch) {
+  struct Part {
+    std::size_t first_word = 0, words = 0, looked_at = 0;
+    double visible = 0, inside = 0, weight = 0;
+    std::size_t end = 0;  // of its slots in the list
+  };
+  const Stratum whole{0, scene.solid_end(), {}, false};
+  const std::span<const Stratum> strata = scene.strata().empty() ? std::span(&whole, 1) : scene.strata();
+  const auto words = scene.visible().words();
+  std::array<Part, DrawScene::kMostStrata> parts;
+  double visible = 0;
+  double vertices = 0;
+  for (std::size_t i = 0; i < strata.size(); ++i) {
+    Part& part = parts[i];
+    if (strata[i].first == strata[i].end) continue;
+    part.first_word = strata[i].first / 64;
+    part.words = (strata[i].end - 1) / 64 + 1 - part.first_word;
+    for (std::size_t w = 0; w < part.words; ++w)
+      part.visible += std::popcount(bits_of(strata[i], words, part.first_word + w));
+    visible += part.visible;
+    vertices += part.visible * strata[i].work.vertices;
+  }
+  scratch.clear();
+  scratch.inside.assign(words.size(), 0);
+  const auto each_word = [&](const Part& part, const auto& body) {
+    for (std::size_t k = 0; k < part.looked_at; ++k)
+      body(part.first_word + (2 * k + 1) * part.words / (2 * part.looked_at));
+  };
+  for (std::size_t i = 0; i < strata.size(); ++i) {
+    Part& part = parts[i];
+    if (part.visible <= 0.0) continue;
+    // Half by number, half by what they take; a few of each.
+    const double share = 0.5 * (part.visible / visible +
+                                (vertices > 0.0 ? part.visible * strata[i].work.vertices / vertices : 1.0));
+    part.looked_at = std::clamp(static_cast<std::size_t>(std::ceil(share * kSampledWords)),
+                                std::min<std::size_t>(4, part.words), part.words);
+    each_word(part, [&](std::size_t w) { scratch.inside[w] |= bits_of(strata[i], words, w); });
+  }
+  cull_boxes(scene.boxes(), planes, scratch.inside, scratch.inside);
+  Exact exact;
+  double draws = 0;
+  bool all = true;
+  for (std::size_t i = 0; i < strata.size(); ++i) {
+    Part& part = parts[i];
+    double tested = 0;
+    each_word(part, [&](std::size_t w) {
+      tested += std::popcount(bits_of(strata[i], words, w));
+      for (std::uint64_t bits = bits_of(strata[i], scratch.inside, w); bits != 0; bits &= bits - 1) {
+        part.inside += 1;
+        scratch.solid.push_back(
+            static_cast<std::uint32_t>(64 * w + static_cast<unsigned>(std::countr_zero(bits))));
+      }
+    });
+    part.end = scratch.solid.size();
+    scratch.tested += static_cast<std::uint64_t>(tested);
+    all = all && tested == part.visible;
+    part.weight = tested > 0.0 ? part.visible / tested : 0.0;
+    draws += part.weight * part.inside;
+    exact.add(strata[i], part.weight * part.inside);
+  }
+  const std::size_t count = scratch.solid.size();
+  Sample sample(scene, screen, all && count <= kSampledSlots);
+  std::size_t part = 0;
+  for (Steps steps(count); steps.below(count); steps.next()) {
+    while (steps.at() >= parts[part].end) ++part;
+    sample.add(scratch.solid[steps.at()], parts[part].weight);
+  }
+  const model::Load load = sample.scaled(draws);
+  return scene.strata().empty() ? load : exact.into(load);
 }
 
 model::Load load_of_visible(const DrawScene& scene, const ScreenArea& screen) {
@@ -229,7 +367,7 @@ model::Load load_of_visible(const DrawScene& scene, const ScreenArea& screen) {
     }
     passed = end;
   }
-  return sample.scaled(count);
+  return sample.scaled(static_cast<double>(count));
 }
 
 model::Load load_of_chunks(const DrawScene& scene, const Octree& tree, std::span<const std::uint32_t> chunks,
@@ -243,7 +381,7 @@ model::Load load_of_chunks(const DrawScene& scene, const Octree& tree, std::span
     for (; steps.below(passed + slots.size()); steps.next()) sample.add(slots[steps.at() - passed]);
     passed += slots.size();
   }
-  model::Load load = sample.scaled(all.slots);
+  model::Load load = sample.scaled(static_cast<double>(all.slots));
   load.vertices = all.vertices;
   load.triangles = all.triangles;
   return load;
@@ -283,7 +421,9 @@ model::Load load_in_frustum(const DrawScene& scene, const Octree& tree, std::spa
     }
     passed += slots.size();
   }
-  model::Load load = sample.scaled(taken == 0 ? 0 : inside * all.slots / taken);
+  model::Load load = sample.scaled(taken == 0 ? 0.0
+                                              : static_cast<double>(inside) * static_cast<double>(all.slots) /
+                                                    static_cast<double>(taken));
   // How many there are in the chunks is known, and only a share is to be estimated: where few slots have most
   // of the vertices, the sample alone says 40 % too much or too little from frame to frame.
   if (sampled_vertices > 0.0) load.vertices = all.vertices * sample.vertices() / sampled_vertices;

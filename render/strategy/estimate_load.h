@@ -13,6 +13,8 @@
 
 namespace scenegen::render {
 
+struct DrawList;
+
 /// How many pixels boxes cover in a picture: (2.23), and its like for orthographic views.
 class ScreenArea {
  public:
@@ -41,10 +43,17 @@ class ScreenArea {
 
 /// Slots looked at for one estimate; longer lists are sampled at equal steps and scaled.
 constexpr std::size_t kSampledSlots = 512;
+constexpr std::size_t kSampledWords = 128;
 
-/// Draws are exact (of a list that is not a sample itself), the rest by kSampledSlots.
+/// Of slots in order (either way). Draws are exact, vertices and triangles too where there are strata; the
+/// rest by kSampledSlots.
 [[nodiscard]] model::Load load_of_slots(const DrawScene& scene, std::span<const std::uint32_t> slots,
-                                        const ScreenArea& screen, std::size_t each_stands_for = 1);
+                                        const ScreenArea& screen);
+/// Of solid slots that are visible by timeline and in the frustum, by a sample of about kSampledWords words
+/// of slots (64 neighbours). Each of DrawScene::strata() is sampled by itself: a few heavy things among many
+/// light ones are neither missed nor met too often. `scratch` holds memory from call to call.
+[[nodiscard]] model::Load estimated_in_frustum(const DrawScene& scene, const CullPlanes& planes,
+                                               const ScreenArea& screen, DrawList& scratch);
 /// Of opaque and masked slots that are visible by timeline. O(slots / 64).
 [[nodiscard]] model::Load load_of_visible(const DrawScene& scene, const ScreenArea& screen);
 /// Draws, vertices and triangles are exact, the rest by kSampledSlots.

@@ -11,12 +11,10 @@
 #include "render/passes/pass_recording.h"
 #include "render/strategy/device_culled.h"
 #include "render/strategy/estimate_load.h"
+#include "render/strategy/picture.h"
 
 namespace scenegen::render {
 namespace {
-
-/// Words of 64 slots that an estimate looks at; all of a scene of fewer.
-constexpr std::size_t kSampledWords = 128;
 
 class HiZStrategy final : public DeviceCulled {
  public:
@@ -66,7 +64,8 @@ class HiZStrategy final : public DeviceCulled {
     }
     if (culling == nullptr) return ListStrategy::draw_solid(pass);
 
-    drawn_[pass.context().frame.serial % drawn_.size()] = {pass.context().frame.serial, picture()};
+    drawn_[pass.context().frame.serial % drawn_.size()] = {pass.context().frame.serial,
+                                                           picture_of(view_, scene_)};
     pass.in_two_parts();
     culling->cull(pass.context(), pass.target(), 0);
     culling->draw(pass.draws(), *order_, 0);
@@ -105,7 +104,8 @@ class HiZStrategy final : public DeviceCulled {
   [[nodiscard]] double blocks() const override { return blocks_; }
   void add_seen(model::FrameFacts& facts) const override {
     facts.hi_z_blocks = blocks_;
-    if (inline_ || last_.drawn == 0 || !alike(last_picture_, picture())) return;
+    if (inline_ || last_.drawn == 0 || !alike(last_picture_, picture_of(view_, scene_), scene_.bounds_m()))
+      return;
     const model::Load& all = facts.in_frustum;
     facts.seen.draws = std::min(static_cast<double>(last_.drawn), all.draws);
     facts.seen.triangles = std::min(static_cast<double>(last_.triangles), all.triangles);
@@ -113,9 +113,12 @@ class HiZStrategy final : public DeviceCulled {
         all.triangles > 0.0 ? all.vertices * facts.seen.triangles / all.triangles : facts.seen.draws;
     facts.exact_seen = true;
   }
-  [[nodiscard]] model::FrameFacts facts() const override { return facts_of(1); }
+  [[nodiscard]] model::FrameFacts facts() const override {
+    list_in_frustum(scene_, planes(), in_frustum_);  // the device does not tell
+    return facts_of(load_of_slots(scene_, in_frustum_.solid, ScreenArea(view_, size_)));
+  }
   [[nodiscard]] model::FrameFacts estimated_facts() const override {
-    return facts_of(std::max<std::size_t>(1, scene_.visible().words().size() / kSampledWords));
+    return facts_of(estimated_in_frustum(scene_, planes(), ScreenArea(view_, size_), in_frustum_));
   }
 
   void resized(glm::uvec2 size) override {
@@ -131,32 +134,17 @@ class HiZStrategy final : public DeviceCulled {
 
  private:
   enum Kind : std::size_t { color, ids };
-  /// What a frame looked at.
-  struct Picture {
-    glm::vec3 eye_m{0}, forward{0};
-    double visible = 0;  ///< objects, by timeline
-  };
   struct Drawn {
     std::uint64_t serial = 0;
     Picture picture;
   };
 
-  [[nodiscard]] Picture picture() const {
-    return {view_.eye_m(), view_.forward(), static_cast<double>(scene_.visible_object_count())};
+  [[nodiscard]] CullPlanes planes() const {
+    return cull_planes(frustum_of(view_.clip_from_world), scene_.bounds_m());
   }
-  /// Does what was seen in one frame say something about another? Not after a seek or a cut.
-  [[nodiscard]] bool alike(const Picture& a, const Picture& b) const {
-    const double most = std::max(a.visible, b.visible);
-    return std::abs(a.visible - b.visible) <= 0.25 * most && glm::dot(a.forward, b.forward) > 0.9F &&
-           glm::distance(a.eye_m, b.eye_m) <= 0.05F * glm::length(scene_.bounds_m().size());
-  }
-
-  /// Of one word of slots in `every`.
-  [[nodiscard]] model::FrameFacts facts_of(std::size_t every) const {
+  [[nodiscard]] model::FrameFacts facts_of(const model::Load& in_frustum) const {
     model::FrameFacts facts = ListStrategy::facts();
-    const CullPlanes planes = cull_planes(frustum_of(view_.clip_from_world), scene_.bounds_m());
-    sample_in_frustum(scene_, planes, every, in_frustum_);  // the device does not tell
-    facts.in_frustum = load_of_slots(scene_, in_frustum_.solid, ScreenArea(view_, size_), every);
+    facts.in_frustum = in_frustum;
     facts.exact_inline = true;
     add_seen(facts);
     return facts;

@@ -38,6 +38,7 @@ struct StrategyContext {
   /// An octree starts empty and is filled by CachedOctree::catch_up(), a slice a frame.
   bool octree_in_slices = false;
   bool shadows = false;  ///< of the sun are drawn, whatever the strategy
+  bool readback = true;  ///< pictures are copied out
 };
 
 /// What a frame took that was submitted some frames ago, seconds; gpu_s < 0: not measured.

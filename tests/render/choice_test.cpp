@@ -69,11 +69,17 @@ struct Replay {
 TEST_CASE("the cheaper way is taken, after a few frames, when it pays back its change") {
   Machine machine;
   Replay replay({.trial_share = 0});
-  for (int i = 0; i < 2; ++i) replay.frame(machine, {5e-3, 2e-3}, {5e-3, 2e-3});
+  for (int i = 0; i < 2; ++i) replay.frame(machine, {3e-3, 2e-3}, {3e-3, 2e-3});
   CHECK(replay.present == 0);  // patience
-  for (int i = 0; i < 5; ++i) replay.frame(machine, {5e-3, 2e-3}, {5e-3, 2e-3});
+  for (int i = 0; i < 5; ++i) replay.frame(machine, {3e-3, 2e-3}, {3e-3, 2e-3});
   CHECK(replay.present == 1);
   CHECK(replay.changes == 1);
+  // After a cut, what is far better is taken at once.
+  Replay cut({.trial_share = 0});
+  cut.frame(machine, {5e-3, 2e-3}, {5e-3, 2e-3});
+  CHECK(cut.present == 1);
+  cut.frame(machine, {1e-3, 5e-3}, {1e-3, 5e-3});
+  CHECK(cut.present == 0);
   // A gain within the margin is not worth a change.
   for (int i = 0; i < 500; ++i) replay.frame(machine, {1.95e-3, 2e-3}, {1.95e-3, 2e-3});
   CHECK(replay.changes == 1);
@@ -179,7 +185,7 @@ TEST_CASE("a trial that loses is over as soon as it can be judged, one that is n
   };
   const ChoiceOptions options;
   CHECK(trial_frames(8e-3, options) == static_cast<int>(options.trial_judged_frames));
-  CHECK(trial_frames(8e-3, {.trial_loss = 10}) >= static_cast<int>(options.trial_frames));
+  CHECK(trial_frames(8e-3, {.at_once = 10, .trial_loss = 10}) >= static_cast<int>(options.trial_frames));
   CHECK(trial_frames(4.1e-3, options) >= static_cast<int>(options.trial_frames));
 }
 
@@ -207,6 +213,51 @@ TEST_CASE("the correction is bounded, slow, and tells the machine from the way")
   CHECK(d.corrected(Method::queries, predicted).cpu_s ==
         Approx(d.corrected(Method::octree, predicted).cpu_s));
   CHECK(!d.knows(Method::inline_queries));
+}
+
+TEST_CASE("of a device that is not shared, what drifts is mostly the way's own") {
+  const Sides predicted{1e-3, 2e-3};
+  const auto learned = [&](bool shared) {
+    Correction c(shared);
+    for (int i = 0; i < 50; ++i) c.measured(Method::hi_z, 100, predicted, {1e-3, 2e-3});
+    // A scene grows: the ratio drifts by 60 % in 100 frames.
+    for (int i = 0; i < 100; ++i)
+      c.measured(Method::octree, 100, predicted, {1e-3, 2e-3 * std::exp(std::log(1.6) * i / 100.0)});
+    return c;
+  };
+  const Correction own = learned(false);
+  const Correction common = learned(true);
+  CHECK(own.corrected(Method::octree, predicted).gpu_s == Approx(3.2e-3).epsilon(0.06));
+  CHECK(common.corrected(Method::octree, predicted).gpu_s < 0.94 * 3.2e-3);
+  CHECK(own.corrected(Method::hi_z, predicted).gpu_s < 0.85 * own.corrected(Method::octree, predicted).gpu_s);
+  CHECK(common.corrected(Method::hi_z, predicted).gpu_s ==
+        Approx(common.corrected(Method::octree, predicted).gpu_s));
+}
+
+TEST_CASE("what was missed, not how many frames it took, ends waiting after changes in a row") {
+  // Twelve changes, one soon after another; then 30 % could be saved.
+  Choice choice({.trial_share = 0});
+  std::array<Offer, 2> offers{Offer{Method::inline_frustum, 4e-3, 0, true, true},
+                              Offer{Method::octree, 4e-3, 0, true, true}};
+  std::size_t present = 0;
+  const auto frames_until_change = [&](double better) {
+    for (int i = 1; i < 1000; ++i) {
+      offers[present].frame_s = 4e-3;
+      offers[1 - present].frame_s = better * 4e-3;
+      const Choice::Decision d = choice.decide(offers, present, 1, nullptr);
+      if (d.take == present) continue;
+      choice.changed(d);
+      present = d.take;
+      return i;
+    }
+    return 1000;
+  };
+  for (int i = 0; i < 12; ++i) (void)frames_until_change(0.7);
+  const int much = frames_until_change(0.7);
+  const int little = frames_until_change(0.95);
+  CHECK(much < 60);
+  CHECK(little > 2 * much);
+  CHECK(little < 300);
 }
 
 TEST_CASE("a way that is being prepared is asked for, not taken; one that is not possible never") {
@@ -248,7 +299,7 @@ TEST_CASE(
   CHECK(d.verdict.rival == Method::inline_frustum);
   // While the octree is prepared, which is to be taken.
   Choice other;
-  offers[1].frame_s = 1e-3;
+  offers[1].frame_s = 4e-3;
   offers[1].change_s = 0;
   for (int i = 0; i < 2; ++i) CHECK(!other.decide(offers, 0, 1, &correction).trial);  // patience
   d = other.decide(offers, 0, 1, &correction);

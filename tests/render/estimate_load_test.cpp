@@ -112,19 +112,54 @@ TEST_CASE("a sample of words of slots tells what is in the frustum") {
   const CullPlanes planes = cull_planes(frustum_of(view.clip_from_world), scene.bounds_m());
   DrawList all;
   list_in_frustum(scene, planes, all);
-  DrawList same;
-  sample_in_frustum(scene, planes, 1, same);
-  CHECK(same.solid == all.solid);
-  DrawList some;
-  sample_in_frustum(scene, planes, 3, some);
-  CHECK(static_cast<double>(some.tested) < 0.4 * static_cast<double>(all.tested));
   const ScreenArea screen(view, kSize);
   const model::Load whole = load_of_slots(scene, all.solid, screen);
-  const model::Load estimated = load_of_slots(scene, some.solid, screen, 3);
+  DrawList some;
+  const model::Load estimated = estimated_in_frustum(scene, planes, screen, some);
+  CHECK(static_cast<double>(some.tested) < 0.5 * static_cast<double>(all.tested));
   REQUIRE(whole.draws < 0.8 * static_cast<double>(all.tested));  // the frustum leaves something out
   CHECK(estimated.draws == Approx(whole.draws).epsilon(0.1));
   CHECK(estimated.vertices == Approx(whole.vertices).epsilon(0.1));
   CHECK(estimated.fragments == Approx(whole.fragments).epsilon(0.25));
+}
+
+TEST_CASE("few heavy things among many light ones are counted as they are") {
+  // One in forty takes 500 times as much, and has its slots together.
+  Scene source = boxes_scene(20'000);
+  Geometry heavy = box_geometry();
+  for (int i = 0; i < 9; ++i)
+    heavy.positions_m.insert(heavy.positions_m.end(), heavy.positions_m.begin(), heavy.positions_m.end());
+  heavy.normals.clear();
+  heavy.tangents.clear();
+  for (auto& texcoords : heavy.texcoords) texcoords.clear();
+  const MeshId mesh = add_mesh(source, heavy, plain({0, 0, 1, 1}));
+  const Random random(6, "heavy");
+  for (std::size_t i = 0; i < 500; ++i) {
+    const auto unit = [&](std::uint64_t k) { return random.unit(8 * i + k); };
+    const ObjectId id = add_object(source, "h" + std::to_string(i), mesh,
+                                   {unit(0) * 40 - 20, unit(1) * 10, unit(2) * 40 - 20}, glm::vec3(0.5F));
+    if (i % 3 != 0) appear_at(source, id, 5.0F);
+  }
+  const timeline::Player player(timeline::compile(source));
+  DrawScene scene(source, player, std::vector<std::uint32_t>(source.materials.size() + 1, 0));
+  REQUIRE(scene.strata().size() >= 2);
+  const View view = look({0, 20, 30}, {10, 5, 0}, kSize);
+  const CullPlanes planes = cull_planes(frustum_of(view.clip_from_world), scene.bounds_m());
+  const ScreenArea screen(view, kSize);
+  DrawList all;
+  list_in_frustum(scene, planes, all);
+  const Sum sum = sum_of(scene, all.solid, screen);
+  REQUIRE(all.solid.size() > kSampledSlots);
+  const model::Load listed = load_of_slots(scene, all.solid, screen);
+  CHECK(listed.vertices == sum.vertices);
+  CHECK(listed.triangles == sum.triangles);
+  std::vector<std::uint32_t> backwards(all.solid.rbegin(), all.solid.rend());
+  CHECK(load_of_slots(scene, backwards, screen).vertices == sum.vertices);
+  DrawList some;
+  const model::Load estimated = estimated_in_frustum(scene, planes, screen, some);
+  CHECK(estimated.draws == Approx(sum.draws).epsilon(0.1));
+  CHECK(estimated.vertices == Approx(sum.vertices).epsilon(0.1));
+  CHECK(estimated.triangles == Approx(sum.triangles).epsilon(0.1));
 }
 
 TEST_CASE("the ground counts once, whether the sample meets it or not") {

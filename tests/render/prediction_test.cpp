@@ -35,6 +35,7 @@ UnitCosts units() {
   c.empty_cpu_s = 10'000;
   c.draw_s = {Curve{{3, 36}, {40, 73}}, Curve{{3, 36}, {50, 116}}};  // 37 + v; 44 + 2 v from 3 on
   c.fragment_s.fill({{0.5, 1}, {2, 2}});
+  c.instance_saves_s = 30;
   c.hidden_fragment_s = 0.5;
   c.background_s = 0.25;
   c.secondary_device_s = 31;
@@ -92,6 +93,34 @@ constexpr double kSecondaries = 12 * 105.;  // 15 draws each
 
 }  // namespace
 
+TEST_CASE("prediction: what is not read back is not copied") {
+  UnitCosts c = units();
+  c.readback_cpu_s = 3000;
+  c.readback_device_s = 7000;
+  PredictionOptions shown = kOneByOne;
+  shown.readback = false;
+  const Prediction read = predict(Method::inline_frustum, facts(), c, kOneByOne);
+  const Prediction only_shown = predict(Method::inline_frustum, facts(), c, shown);
+  CHECK(read.cpu_s - only_shown.cpu_s == Approx(3000));
+  CHECK(read.gpu_s - only_shown.gpu_s == Approx(7000));
+  CHECK(predict(Method::inline_frustum, facts(), units(), kOneByOne).cpu_s == Approx(read.cpu_s));
+}
+
+TEST_CASE("prediction: outlines of textured things cost their own, by their share of the fragments") {
+  UnitCosts c = units();
+  c.edge_s = 1;
+  c.textured_edge_s = 5;
+  Load load{10, 360, 200, 0, 0.25, 120};
+  const double plain = device_stages(load, 1000, c).fragments_s;
+  load.textured_fragment_share = 0;  // as of draws, of which none is
+  CHECK(device_stages(load, 1000, c).fragments_s == Approx(plain));
+  load.textured_fragment_share = 1;
+  const double textured = device_stages(load, 1000, c).fragments_s;
+  c.edge_s = c.textured_edge_s = 0;
+  const double inside = device_stages(load, 1000, c).fragments_s;
+  CHECK(textured - inside == Approx(5 * (plain - inside)));
+}
+
 TEST_CASE(
     "prediction: culling on the device costs by blocks and by what is visible, and draws what is seen") {
   FrameFacts f = facts();
@@ -105,7 +134,7 @@ TEST_CASE(
   FrameFacts same = f;
   same.in_frustum = f.seen;
   const Prediction flat = predict(Method::inline_frustum, same, units(), kOneByOne);
-  CHECK(p.draw_device_s < flat.draw_device_s);
+  CHECK(flat.draw_device_s - p.draw_device_s == Approx(16 * 30));
   same.in_frustum.commands = 4;
   CHECK(p.draw_device_s == Approx(predict(Method::inline_frustum, same, units(), kOneByOne).draw_device_s));
   // The sets of visible slots are written whatever changes; nothing else is.

@@ -12,6 +12,7 @@ void each_of(auto& load, const auto& see) {
   see("fragments", load.fragments);
   see("triangles", load.triangles);
   see("texturedShare", load.textured_share);
+  see("texturedFragmentShare", load.textured_fragment_share);
   see("screenShare", load.screen_share);
   see("commands", load.commands);
 }
