@@ -32,27 +32,38 @@ SceneOctree::SceneOctree(const DrawScene& scene, std::uint32_t slots_per_node, B
           },
           options_of(scene, slots_per_node)),
       mirrored_(scene.slot_count()),
-      pending_(scene.solid_end()) {
-  // What is hidden now will be noted when it appears.
-  for (std::uint32_t slot = 0; slot < scene.solid_end(); ++slot) {
-    if (!scene.visible().test(slot)) continue;
-    pending_.set(slot);
-    ++pending_slots_;
-  }
+      followed_(scene.solid_end()),
+      moved_(scene.solid_end()) {
+  count_pending();
   if (build == Build::at_once) (void)catch_up(std::numeric_limits<std::size_t>::max());
+}
+
+std::uint64_t SceneOctree::pending_in(std::size_t word) const {
+  const std::uint64_t pending =
+      (scene_.visible().words()[word] ^ followed_.words()[word]) | moved_.words()[word];
+  const std::size_t end = scene_.solid_end();
+  return 64 * word + 64 <= end ? pending : pending & ~(~std::uint64_t{0} << (end % 64));
+}
+
+void SceneOctree::count_pending() {
+  pending_slots_ = 0;
+  cursor_ = 0;
+  for (std::size_t word = 0; word < moved_.words().size(); ++word)
+    pending_slots_ += static_cast<std::size_t>(std::popcount(pending_in(word)));
 }
 
 void SceneOctree::follow(std::size_t count) {
   gone_.clear();
   come_.clear();
-  const auto words = pending_.words();
   for (; count > 0; --count) {
-    while (words[cursor_] == 0) ++cursor_;
+    std::uint64_t pending = pending_in(cursor_);
+    while (pending == 0) pending = pending_in(++cursor_);
     const auto slot =
-        static_cast<std::uint32_t>(64 * cursor_ + static_cast<unsigned>(std::countr_zero(words[cursor_])));
-    pending_.reset(slot);
-    --pending_slots_;
+        static_cast<std::uint32_t>(64 * cursor_ + static_cast<unsigned>(std::countr_zero(pending)));
     const bool wanted = scene_.visible().test(slot);
+    wanted ? followed_.set(slot) : followed_.reset(slot);
+    moved_.reset(slot);
+    --pending_slots_;
     const bool there = tree_.contains(slot);
     const bool stays = wanted && there && tree_.move_within(slot);
     if (there && !stays) gone_.push_back(slot);
@@ -75,20 +86,12 @@ void SceneOctree::update(const timeline::ChangeSet& changes) {
 void SceneOctree::note(const timeline::ChangeSet& changes) {
   for (const ObjectId id : changes.moved) {
     for (const std::uint32_t slot : scene_.slots_of(id)) {
-      if (slot < scene_.solid_end()) tree_.forget_box(slot);
+      if (slot >= scene_.solid_end()) continue;
+      tree_.forget_box(slot);
+      moved_.set(slot);
     }
   }
-  for (const std::span<const ObjectId> ids :
-       {changes.shown, changes.hidden, changes.moved, changes.remeshed}) {
-    for (const ObjectId id : ids) {
-      for (const std::uint32_t slot : scene_.slots_of(id)) {
-        if (slot >= scene_.solid_end() || pending_.test(slot)) continue;
-        pending_.set(slot);
-        ++pending_slots_;
-        cursor_ = std::min<std::size_t>(cursor_, slot / 64);
-      }
-    }
-  }
+  if (changes.count() > 0) count_pending();
 }
 
 bool SceneOctree::catch_up(std::size_t slots) {

@@ -17,7 +17,8 @@ class SceneOctree {
 
   /// After the scene took the changes. O(changes * height + Octree::refresh()).
   void update(const timeline::ChangeSet& changes);
-  /// The same put off: only remembers which slots were touched. O(changes).
+  /// The same put off. What is in the tree is compared with what is visible, 64 slots at a time, and only
+  /// what moved is remembered: O(moved + slots / 64).
   void note(const timeline::ChangeSet& changes);
   /// Does about `slots` slots' worth of what was put off; true when nothing is left. Until then the tree is
   /// of no use. What happened to a slot in between does not matter: it is compared with the scene as it is
@@ -29,19 +30,24 @@ class SceneOctree {
   [[nodiscard]] const Octree& tree() const { return tree_; }
   /// Host memory held.
   [[nodiscard]] std::uint64_t memory_bytes() const {
-    return tree_.bytes() + mirrored_.memory_bytes() + pending_.memory_bytes() + held_bytes(gone_, come_);
+    return tree_.bytes() + mirrored_.memory_bytes() + followed_.memory_bytes() + moved_.memory_bytes() +
+           held_bytes(gone_, come_);
   }
 
  private:
   /// The next `count` slots of those put off.
   void follow(std::size_t count);
+  /// Slots of a word that are put off.
+  [[nodiscard]] std::uint64_t pending_in(std::size_t word) const;
+  void count_pending();
 
   const DrawScene& scene_;
   Octree tree_;
   BitSet mirrored_;  // as recorded: which way a slot's faces wind is part of its commands
-  BitSet pending_;
+  BitSet followed_;  // visible when the tree last followed
+  BitSet moved_;     // since then
   std::size_t pending_slots_ = 0;
-  std::size_t cursor_ = 0;  // word of pending_ to look at next
+  std::size_t cursor_ = 0;  // word to look at next
   bool refreshed_ = true;
   std::vector<std::uint32_t> gone_, come_;  // scratch
 };

@@ -302,6 +302,9 @@ model::Load estimated_in_frustum(const DrawScene& scene, const CullPlanes& plane
     vertices += part.visible * strata[i].work.vertices;
   }
   scratch.clear();
+  // As many as it can ever be, so that no later frame asks for memory.
+  scratch.solid.reserve(
+      std::min<std::size_t>(scene.solid_end(), 64 * (kSampledWords + 5 * DrawScene::kMostStrata)));
   scratch.inside.assign(words.size(), 0);
   const auto each_word = [&](const Part& part, const auto& body) {
     for (std::size_t k = 0; k < part.looked_at; ++k)

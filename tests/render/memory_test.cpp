@@ -49,9 +49,10 @@ struct Way {
   std::string strategy;
   NodeForm form;
 };
-const std::array kWays{Way{"inline", NodeForm::automatic}, Way{"octree", NodeForm::secondaries},
-                       Way{"octree", NodeForm::indirect},  Way{"queries", NodeForm::secondaries},
-                       Way{"queries", NodeForm::indirect}, Way{"adaptive", NodeForm::indirect}};
+const std::array kWays{Way{"inline", NodeForm::automatic},    Way{"hi-z", NodeForm::automatic},
+                       Way{"octree", NodeForm::secondaries},  Way{"octree", NodeForm::indirect},
+                       Way{"queries", NodeForm::secondaries}, Way{"queries", NodeForm::indirect},
+                       Way{"adaptive", NodeForm::indirect}};
 
 /// The account after the scene was built up and stood still for some frames.
 MemoryAccount account_of(const Scene& scene, const Way& way) {

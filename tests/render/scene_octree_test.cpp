@@ -116,7 +116,8 @@ TEST_CASE("a slot that only went and came again while nobody looked keeps its ch
     revisions.push_back(late.tree().chunk(c).revision);
   go(5.0);
   go(0.0);
-  CHECK(late.pending() > 20);
+  CHECK(late.pending() > 10);  // what moved; what is as visible as before is nothing to do
+  CHECK(late.pending() < 100);
   CHECK(late.catch_up(10'000));
   for (std::uint32_t c = 0; c < late.tree().chunk_numbers(); ++c)
     CHECK(late.tree().chunk(c).revision == revisions[c]);
