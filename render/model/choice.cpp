@@ -23,13 +23,13 @@ std::size_t index(Method method) {
 
 }  // namespace
 
-void Correction::learn(Side& side, Method method, bool fresh, bool shared, double ratio) const {
+void Correction::learn(Side& side, Method method, bool fresh, bool machines, double ratio) const {
   // A single frame that took ten times as long (somebody else's turn) says no more than one that took twice.
   const double surprise = bounded(std::log(ratio) - factor(side, method));
   double& own = side.own[index(method)];
   // Where the machine is not shared: fast enough to be 5 % behind when a ratio drifts by 60 % in 100 frames
   // (a growing town on an H200).
-  if (fresh || !shared) own = bounded(own + (fresh ? 0.2 : 0.06) * surprise);
+  if (fresh || !machines) own = bounded(own + (fresh ? 0.2 : 0.06) * surprise);
   side.machine = bounded(side.machine + (fresh ? 0.01 : 0.04) * surprise);
 }
 
@@ -145,10 +145,11 @@ std::optional<Reason> Choice::objection(const Offer& now, const Offer& other, st
                                         double elapsed) {
   const double saved_s = now.frame_s - other.frame_s;
   const double margin_s = options_.margin * now.frame_s;
-  if (saved_s <= margin_s || wanted_ != number) {
+  if (saved_s <= margin_s || wanted_ != number || cut_) {
     wanted_ = number;
     wanted_frames_ = 0;
     missed_s_ = 0;
+    elapsed = std::min(elapsed, 1.0);  // frames before were of something else
   }
   if (saved_s <= 0.0) return Reason::cheaper;
   if (saved_s <= margin_s) return Reason::too_near;
@@ -164,7 +165,7 @@ std::optional<Reason> Choice::objection(const Offer& now, const Offer& other, st
 }
 
 bool Choice::far_better(const Offer& other, const Offer& now) const {
-  return other.ready && now.frame_s - other.frame_s >= options_.at_once * now.frame_s;
+  return cut_ && other.ready && now.frame_s - other.frame_s >= options_.at_once * now.frame_s;
 }
 
 bool Choice::trial_lost(const Offer& now, const Offer& best) const {
@@ -173,8 +174,9 @@ bool Choice::trial_lost(const Offer& now, const Offer& best) const {
 }
 
 Choice::Decision Choice::decide(std::span<const Offer> offers, std::size_t present, std::uint32_t elapsed,
-                                const Correction* correction) {
+                                const Correction* correction, bool cut) {
   const Offer& now = offers[present];
+  cut_ = cut;
   pass(elapsed, now.frame_s);
   Decision d;
   d.take = present;

@@ -39,7 +39,8 @@ class Correction {
     double machine = 0;                  // ln
     std::array<double, kMethods> own{};  // ln
   };
-  void learn(Side& side, Method method, bool fresh, bool shared, double ratio) const;
+  /// `machines`: what drifts is the machine's alone.
+  void learn(Side& side, Method method, bool fresh, bool machines, double ratio) const;
   [[nodiscard]] double factor(const Side& side, Method method) const;
   /// Itself, if it was measured.
   [[nodiscard]] Method known_relative(Method method) const;
@@ -81,9 +82,9 @@ struct Verdict {
 [[nodiscard]] std::string in_words(const Verdict& verdict);
 
 struct ChoiceOptions {
-  double margin = 0.03;  ///< another way must take less by this share
-  double frames = 3;     ///< for so many frames in a row
-  double at_once = 0.4;  ///< or by this share at once, trial or not: the camera was cut to something else
+  double margin = 0.03;          ///< another way must take less by this share
+  double frames = 3;             ///< for so many frames in a row
+  double at_once = 0.4;          ///< or at once after a cut, trial or not, when it takes less by this share
   double penalty_frames = 0.25;  ///< or so many frames' time missed, for each change soon after another
   double horizon_frames = 60;    ///< and pay back its change within so many, or have missed as much already
   double trial_share = 0.01;     ///< of the time goes into trials at most; 0: none
@@ -110,9 +111,9 @@ class Choice {
     bool trial = false;
   };
   /// `elapsed`: frames since the last decision. `correction`: what was measured, null when nothing is
-  /// learned.
+  /// learned. `cut`: this frame shows something else than the one before.
   [[nodiscard]] Decision decide(std::span<const Offer> offers, std::size_t present, std::uint32_t elapsed,
-                                const Correction* correction);
+                                const Correction* correction, bool cut = false);
   /// A decision was carried out. (One that asks for a way that has to be prepared is repeated until then.)
   void changed(const Decision& decision);
 
@@ -145,6 +146,7 @@ class Choice {
   double trial_left_ = 0;      // frames
   double trial_purse_s_ = -1;  // below 0: the advance was not paid yet
   bool after_trial_ = false;
+  bool cut_ = false;
 };
 
 }  // namespace scenegen::render::model

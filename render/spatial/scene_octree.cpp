@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <limits>
 
 namespace scenegen::render {
@@ -57,7 +58,10 @@ void SceneOctree::follow(std::size_t count) {
   come_.clear();
   for (; count > 0; --count) {
     std::uint64_t pending = pending_in(cursor_);
-    while (pending == 0) pending = pending_in(++cursor_);
+    while (pending == 0) {
+      assert(cursor_ + 1 < moved_.words().size());
+      pending = pending_in(++cursor_);
+    }
     const auto slot =
         static_cast<std::uint32_t>(64 * cursor_ + static_cast<unsigned>(std::countr_zero(pending)));
     const bool wanted = scene_.visible().test(slot);

@@ -15,12 +15,13 @@ class SceneOctree {
   /// Takes the scene's present state; the root is round everything, hidden or not.
   SceneOctree(const DrawScene& scene, std::uint32_t slots_per_node, Build build = Build::at_once);
 
-  /// After the scene took the changes. O(changes * height + Octree::refresh()).
+  /// After the scene took the changes. O(changes * height + slots / 64 + Octree::refresh()).
   void update(const timeline::ChangeSet& changes);
   /// The same put off. What is in the tree is compared with what is visible, 64 slots at a time, and only
   /// what moved is remembered: O(moved + slots / 64).
   void note(const timeline::ChangeSet& changes);
-  /// Does about `slots` slots' worth of what was put off; true when nothing is left. Until then the tree is
+  /// Does about `slots` slots' worth of what was put off; true when nothing is left. All changes of the scene
+  /// must have been noted. Until then the tree is
   /// of no use. What happened to a slot in between does not matter: it is compared with the scene as it is
   /// now.
   bool catch_up(std::size_t slots);

@@ -93,7 +93,7 @@ class Adaptive final : public Strategy {
   [[nodiscard]] Strategy& taken() const { return strategy_of(way_); }
   [[nodiscard]] model::Method method_of(Way way, const model::FrameFacts& facts) const;
   [[nodiscard]] double idle_s() const;
-  [[nodiscard]] bool due(const View& view) const;
+  [[nodiscard]] bool due() const;
   void learn_of_last_frame();
   void learn_update(double measured_s, double levels, double chunks, double slots);
   [[nodiscard]] model::Sides sides_of(model::Method method, const model::FrameFacts& facts) const;
@@ -137,12 +137,12 @@ class Adaptive final : public Strategy {
   model::FrameFacts facts_;  // the same in steady state, with guesses for the other
   double stale_draws_ = 0;   // of kept commands in the frustum, at the last decision
   std::array<model::Offer, kWays> offers_;
-  std::array<model::Sides, kWays> raw_;  // not corrected
   ChoiceReport report_;
 
   std::uint64_t frame_ = 0;
   std::uint64_t decided_frame_ = 0;
-  Picture decided_picture_;
+  Picture picture_;   // of the last frame planned
+  bool cut_ = false;  // it shows something else than the one before
   std::uint32_t since_change_ = 1000;
   double choose_s_ = 0;                 // mean
   double cpu_s_ = 2e-3, gpu_s_ = 2e-3;  // means of what frames took
@@ -196,9 +196,8 @@ double Adaptive::idle_s() const {
 }
 
 /// As often as the choice keeps to its share of a frame; at once after a seek or a cut.
-bool Adaptive::due(const View& view) const {
-  if (frame_ <= 2 || !alike(decided_picture_, picture_of(view, context_.scene), context_.scene.bounds_m()))
-    return true;
+bool Adaptive::due() const {
+  if (frame_ <= 2 || cut_) return true;
   const double share_s =
       (choice_.in_trial() ? kChooseShareInTrial : kChooseShare) * std::max(1e-6, frame_s({cpu_s_, gpu_s_}));
   return static_cast<double>(frame_ - decided_frame_) >=
@@ -211,6 +210,9 @@ void Adaptive::plan(const View& view) {
   learn_of_last_frame();
   planned_update_s_ = update_tree_s_;
   planned_changed_ = last_changed_;
+  const Picture picture = picture_of(view, context_.scene);
+  cut_ = !alike(picture_, picture, context_.scene.bounds_m());
+  picture_ = picture;
   // Memory ran out while it drew.
   if ((way_ == tree && !tree_->available()) || (way_ == device && !device_->available())) way_ = flat;
   taken().plan(view);
@@ -220,7 +222,7 @@ void Adaptive::plan(const View& view) {
     force(view);
   } else {
     if (way_ != tree && (preparing_ || near())) prepare();
-    if (due(view) || (preparing_ && nearly_done())) {
+    if (due() || (preparing_ && nearly_done())) {
       const auto start = Clock::now();
       gather(view);
       make_offers();
@@ -336,25 +338,20 @@ model::Sides Adaptive::sides_of(model::Method method, const model::FrameFacts& f
 
 void Adaptive::make_offers() {
   using model::Method;
-  const auto sides = [&](Method method) { return sides_of(method, facts_); };
   const auto corrected = [&](Method method, const model::Sides& raw) {
     return frame_s(context_.options.correction ? correction_.corrected(method, raw) : raw);
   };
-  raw_[flat] = sides(Method::inline_frustum);
-  offers_[flat] = {Method::inline_frustum, corrected(Method::inline_frustum, raw_[flat]), 0.0, true, true};
+  const auto offered_s = [&](Method method) { return corrected(method, sides_of(method, facts_)); };
+  offers_[flat] = {Method::inline_frustum, offered_s(Method::inline_frustum), 0.0, true, true};
   // The tree's strategy asks as many queries as pay, none if none does.
   Method method = Method::octree;
-  raw_[tree] = sides(method);
-  double tree_s = corrected(method, raw_[tree]);
-  const model::Sides asking = sides(Method::queries);
-  const double asking_s = corrected(Method::queries, asking);
+  double tree_s = offered_s(method);
+  const double asking_s = offered_s(Method::queries);
   if (way_ == tree ? facts_.asked > 0.0 : asking_s < tree_s) {
     method = Method::queries;
-    raw_[tree] = asking;
     tree_s = asking_s;
   }
-  raw_[device] = sides(Method::hi_z);
-  offers_[device] = {Method::hi_z, corrected(Method::hi_z, raw_[device]), 0.0, device_->available(), true};
+  offers_[device] = {Method::hi_z, offered_s(Method::hi_z), 0.0, device_->available(), true};
   const bool ready = built_ && nearly_done();
   offers_[tree] = {method, tree_s, way_ == tree ? 0.0 : change_to_tree_s(), tree_->available(), ready};
 }
@@ -362,10 +359,9 @@ void Adaptive::make_offers() {
 void Adaptive::decide(const View& view) {
   const auto elapsed = static_cast<std::uint32_t>(frame_ - decided_frame_);
   decided_frame_ = frame_;
-  decided_picture_ = picture_of(view, context_.scene);
   const auto start = Clock::now();
   const model::Choice::Decision decision =
-      choice_.decide(offers_, way_, elapsed, context_.options.correction ? &correction_ : nullptr);
+      choice_.decide(offers_, way_, elapsed, context_.options.correction ? &correction_ : nullptr, cut_);
   report_.verdict = decision.verdict;
   report_.choose_s += seconds_since(start);
   const auto wanted = static_cast<Way>(decision.take);
@@ -382,10 +378,16 @@ void Adaptive::prepare() {
   const double budget_s = std::max(kPrepareShare * frame_s({cpu_s_, gpu_s_}), kIdleShare * idle_s());
   const auto start = Clock::now();
   const std::size_t pending = tree_->pending();
+  const Octree::Refreshed before = tree_->refreshed();
   while (!tree_->catch_up(kSlice) && seconds_since(start) < budget_s) {
   }
-  const auto done = static_cast<double>(pending - std::min(pending, tree_->pending()));
-  if (built_) learn_update(seconds_since(start), done * std::max(1.0, facts_.height), 0.0, 0.0);
+  // Many at a time take less each than what changes in a frame.
+  if (built_ && pending <= kNearlyDone && tree_->available()) {
+    const Octree::Refreshed done = tree_->refreshed().since(before);
+    learn_update(seconds_since(start),
+                 static_cast<double>(pending - tree_->pending()) * std::max(1.0, facts_.height),
+                 static_cast<double>(done.chunks), static_cast<double>(done.slots));
+  }
   built_ = built_ || nearly_done();
 }
 

@@ -45,6 +45,10 @@ class CachedOctree : public Strategy {
   [[nodiscard]] std::uint32_t objects_per_node() const { return objects_per_node_; }
   [[nodiscard]] bool behind() const { return octree_ && octree_->behind(); }
   [[nodiscard]] std::size_t pending() const { return octree_ ? octree_->pending() : 0; }
+  /// What bringing chunks up to date did since the beginning.
+  [[nodiscard]] Octree::Refreshed refreshed() const {
+    return octree_ ? octree_->tree().refreshed() : Octree::Refreshed{};
+  }
   /// After plan(), before anything is drawn: what drawing the octree would find. All of it is exact but the
   /// fragments. Fills the octree's part of `facts`.
   void foresee(model::FrameFacts& facts) const;

@@ -81,12 +81,12 @@ class Sample {
   [[nodiscard]] double triangles() const { return triangles_; }
   [[nodiscard]] model::Load scaled(double draws) const {
     model::Load load;
-    if (taken_ == 0) return load;
+    if (draws <= 0.0) return load;
     load.draws = draws;
-    const double scale = draws / weights_;
+    const double scale = weights_ > 0.0 ? draws / weights_ : 0.0;  // 0: all that was met is large
     load.vertices = scale * vertices_;
     load.triangles = scale * triangles_;
-    load.textured_share = textured_ / weights_;
+    if (weights_ > 0.0) load.textured_share = textured_ / weights_;
     Coverage coverage(screen_);
     double textured_fragments = 0.0;
     for (std::size_t i = 0; i < taken_; ++i) {
@@ -281,7 +281,8 @@ model::Load load_of_slots(const DrawScene& scene, std::span<const std::uint32_t>
 model::Load estimated_in_frustum(const DrawScene& scene, const CullPlanes& planes, const ScreenArea& screen,
                                  DrawList& scratch) {
   struct Part {
-    std::size_t first_word = 0, words = 0, looked_at = 0;
+    std::size_t first_word = 0, end_word = 0;
+    std::size_t shown = 0, looked_at = 0;  // words in which something is visible, and those looked at
     double visible = 0, inside = 0, weight = 0;
     std::size_t end = 0;  // of its slots in the list
   };
@@ -295,9 +296,12 @@ model::Load estimated_in_frustum(const DrawScene& scene, const CullPlanes& plane
     Part& part = parts[i];
     if (strata[i].first == strata[i].end) continue;
     part.first_word = strata[i].first / 64;
-    part.words = (strata[i].end - 1) / 64 + 1 - part.first_word;
-    for (std::size_t w = 0; w < part.words; ++w)
-      part.visible += std::popcount(bits_of(strata[i], words, part.first_word + w));
+    part.end_word = (strata[i].end - 1) / 64 + 1;
+    for (std::size_t w = part.first_word; w < part.end_word; ++w) {
+      const std::uint64_t bits = bits_of(strata[i], words, w);
+      part.visible += std::popcount(bits);
+      part.shown += bits != 0 ? 1 : 0;
+    }
     visible += part.visible;
     vertices += part.visible * strata[i].work.vertices;
   }
@@ -306,19 +310,28 @@ model::Load estimated_in_frustum(const DrawScene& scene, const CullPlanes& plane
   scratch.solid.reserve(
       std::min<std::size_t>(scene.solid_end(), 64 * (kSampledWords + 5 * DrawScene::kMostStrata)));
   scratch.inside.assign(words.size(), 0);
-  const auto each_word = [&](const Part& part, const auto& body) {
-    for (std::size_t k = 0; k < part.looked_at; ++k)
-      body(part.first_word + (2 * k + 1) * part.words / (2 * part.looked_at));
+  // Equal steps over the words that have something to show.
+  const auto each_word = [&](std::size_t i, const auto& body) {
+    const Part& part = parts[i];
+    std::size_t rank = 0;
+    std::size_t k = 0;
+    for (std::size_t w = part.first_word; k < part.looked_at; ++w) {
+      if (bits_of(strata[i], words, w) == 0) continue;
+      if (rank++ != (2 * k + 1) * part.shown / (2 * part.looked_at)) continue;
+      body(w);
+      ++k;
+    }
   };
   for (std::size_t i = 0; i < strata.size(); ++i) {
     Part& part = parts[i];
     if (part.visible <= 0.0) continue;
     // Half by number, half by what they take; a few of each.
-    const double share = 0.5 * (part.visible / visible +
-                                (vertices > 0.0 ? part.visible * strata[i].work.vertices / vertices : 1.0));
+    const double number = part.visible / visible;
+    const double share =
+        0.5 * (number + (vertices > 0.0 ? part.visible * strata[i].work.vertices / vertices : number));
     part.looked_at = std::clamp(static_cast<std::size_t>(std::ceil(share * kSampledWords)),
-                                std::min<std::size_t>(4, part.words), part.words);
-    each_word(part, [&](std::size_t w) { scratch.inside[w] |= bits_of(strata[i], words, w); });
+                                std::min<std::size_t>(4, part.shown), part.shown);
+    each_word(i, [&](std::size_t w) { scratch.inside[w] |= bits_of(strata[i], words, w); });
   }
   cull_boxes(scene.boxes(), planes, scratch.inside, scratch.inside);
   Exact exact;
@@ -327,7 +340,7 @@ model::Load estimated_in_frustum(const DrawScene& scene, const CullPlanes& plane
   for (std::size_t i = 0; i < strata.size(); ++i) {
     Part& part = parts[i];
     double tested = 0;
-    each_word(part, [&](std::size_t w) {
+    each_word(i, [&](std::size_t w) {
       tested += std::popcount(bits_of(strata[i], words, w));
       for (std::uint64_t bits = bits_of(strata[i], scratch.inside, w); bits != 0; bits &= bits - 1) {
         part.inside += 1;

@@ -128,6 +128,7 @@ class HiZStrategy final : public DeviceCulled {
 
   void add_memory(MemoryAccount& to) const override {
     ListStrategy::add_memory(to);
+    to.add_host(MemoryKind::lists, in_frustum_.memory_bytes());
     if (layout_) to.add_host(MemoryKind::lists, layout_->memory_bytes());
     if (order_) to.add_host(MemoryKind::lists, order_->memory_bytes());
   }

@@ -103,6 +103,7 @@ Result<ordered_json> facts_of(const Scene& scene, render::RendererOptions option
 void print_line(const std::string& scene, const render::Calibration& calibration, const ordered_json& row) {
   render::model::PredictionOptions how;
   how.indirect_nodes = row["indirect"];
+  how.readback = false;
   const render::model::FrameFacts facts = test::facts_from_json(row["facts"]);
   std::printf("%-24s %-36s", scene.c_str(), calibration.key.device.c_str());
   for (const Method m : {Method::inline_frustum, Method::octree, Method::queries, Method::hi_z})

@@ -74,15 +74,30 @@ TEST_CASE("the cheaper way is taken, after a few frames, when it pays back its c
   for (int i = 0; i < 5; ++i) replay.frame(machine, {3e-3, 2e-3}, {3e-3, 2e-3});
   CHECK(replay.present == 1);
   CHECK(replay.changes == 1);
-  // After a cut, what is far better is taken at once.
-  Replay cut({.trial_share = 0});
-  cut.frame(machine, {5e-3, 2e-3}, {5e-3, 2e-3});
-  CHECK(cut.present == 1);
-  cut.frame(machine, {1e-3, 5e-3}, {1e-3, 5e-3});
-  CHECK(cut.present == 0);
   // A gain within the margin is not worth a change.
   for (int i = 0; i < 500; ++i) replay.frame(machine, {1.95e-3, 2e-3}, {1.95e-3, 2e-3});
   CHECK(replay.changes == 1);
+}
+
+TEST_CASE("after a cut what is far better is taken at once, and what was missed before does not count") {
+  std::array<Offer, 2> offers{Offer{Method::inline_frustum, 5e-3, 0, true, true},
+                              Offer{Method::octree, 2e-3, 0, true, true}};
+  Choice choice({.trial_share = 0});
+  Choice::Decision d = choice.decide(offers, 0, 1, nullptr, true);
+  CHECK(d.take == 1);
+  choice.changed(d);
+  // Just taken: kept, but for the next cut.
+  std::swap(offers[0].frame_s, offers[1].frame_s);
+  CHECK(choice.decide(offers, 1, 1, nullptr).take == 1);
+  d = choice.decide(offers, 1, 1, nullptr, true);
+  CHECK(d.take == 0);
+  // A little better is not far better: the frames since the last decision showed something else.
+  Choice patient({.trial_share = 0});
+  offers[0].frame_s = 5e-3;
+  offers[1].frame_s = 4.5e-3;
+  CHECK(patient.decide(offers, 0, 60, nullptr, true).take == 0);
+  CHECK(patient.decide(offers, 0, 1, nullptr).take == 0);
+  CHECK(patient.decide(offers, 0, 1, nullptr).take == 1);
 }
 
 TEST_CASE("a change that costs more than it will bring is put off until as much was missed") {

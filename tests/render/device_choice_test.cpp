@@ -67,6 +67,7 @@ Table predict_all(std::uint32_t frames_in_flight) {
     PredictionOptions how;
     how.frames_in_flight = frames_in_flight;
     how.indirect_nodes = row.at("indirect");
+    how.readback = false;
     const std::string scene = row.at("scene");
     const auto percent = static_cast<int>(100 * row.at("at").get<double>());
     Predicted& predicted = out[scene + ", " + std::to_string(percent) + " %"][device];

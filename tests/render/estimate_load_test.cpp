@@ -5,6 +5,7 @@
 
 #include "render/spatial/scene_octree.h"
 #include "render/strategy/draw_list.h"
+#include "render/strategy/picture.h"
 #include "render/strategy/touched_chunks.h"
 #include "scene/random.h"
 #include "tests/render/render_support.h"
@@ -127,8 +128,8 @@ TEST_CASE("few heavy things among many light ones are counted as they are") {
   // One in forty takes 500 times as much, and has its slots together.
   Scene source = boxes_scene(20'000);
   Geometry heavy = box_geometry();
-  for (int i = 0; i < 9; ++i)
-    heavy.positions_m.insert(heavy.positions_m.end(), heavy.positions_m.begin(), heavy.positions_m.end());
+  const std::vector<glm::vec3> once = heavy.positions_m;
+  for (int i = 1; i < 500; ++i) heavy.positions_m.insert(heavy.positions_m.end(), once.begin(), once.end());
   heavy.normals.clear();
   heavy.tangents.clear();
   for (auto& texcoords : heavy.texcoords) texcoords.clear();
@@ -160,6 +161,51 @@ TEST_CASE("few heavy things among many light ones are counted as they are") {
   CHECK(estimated.draws == Approx(sum.draws).epsilon(0.1));
   CHECK(estimated.vertices == Approx(sum.vertices).epsilon(0.1));
   CHECK(estimated.triangles == Approx(sum.triangles).epsilon(0.1));
+}
+
+TEST_CASE("the few that are visible of many that stand together are met") {
+  Scene source = boxes_scene(40'000);
+  Geometry heavy = box_geometry();
+  const std::vector<glm::vec3> once = heavy.positions_m;
+  for (int i = 1; i < 100; ++i) heavy.positions_m.insert(heavy.positions_m.end(), once.begin(), once.end());
+  heavy.normals.clear();
+  heavy.tangents.clear();
+  for (auto& texcoords : heavy.texcoords) texcoords.clear();
+  const MeshId mesh = add_mesh(source, heavy, plain({0, 0, 1, 1}));
+  for (int i = 0; i < 20'000; ++i) {
+    const ObjectId id = add_object(source, "s" + std::to_string(i), mesh,
+                                   {static_cast<float>(i % 20) - 10.0F, 5, 0}, glm::vec3(0.5F));
+    if (i < 9000 || i >= 9200) appear_at(source, id, 5.0F);
+  }
+  const timeline::Player player(timeline::compile(source));
+  const DrawScene scene(source, player, std::vector<std::uint32_t>(source.materials.size() + 1, 0));
+  const View view = look({0, 20, 60}, {0, 5, 0}, kSize);
+  const CullPlanes planes = cull_planes(frustum_of(view.clip_from_world), scene.bounds_m());
+  const ScreenArea screen(view, kSize);
+  DrawList all;
+  DrawList some;
+  list_in_frustum(scene, planes, all);
+  const Sum sum = sum_of(scene, all.solid, screen);
+  CHECK(estimated_in_frustum(scene, planes, screen, some).vertices == Approx(sum.vertices).epsilon(0.1));
+}
+
+TEST_CASE("pictures are alike until a seek or a cut") {
+  const Box scene_m{{0, 0, 0}, {30, 0, 40}};  // a twentieth of the diagonal is 2.5 m
+  const Picture one{{0, 0, 0}, {1, 0, 0}, 1000};
+  CHECK(alike(one, one, scene_m));
+  const auto with = [&](const glm::vec3& eye_m, float turned_rad, double visible) {
+    const Picture other{eye_m, {std::cos(turned_rad), std::sin(turned_rad), 0}, visible};
+    CHECK(alike(one, other, scene_m) == alike(other, one, scene_m));
+    return alike(one, other, scene_m);
+  };
+  CHECK(with({2.4F, 0, 0}, 0, 1000));
+  CHECK(!with({2.6F, 0, 0}, 0, 1000));
+  CHECK(with({0, 0, 0}, glm::radians(25.0F), 1000));
+  CHECK(!with({0, 0, 0}, glm::radians(27.0F), 1000));
+  CHECK(with({0, 0, 0}, 0, 1300));
+  CHECK(!with({0, 0, 0}, 0, 1400));
+  CHECK(with({0, 0, 0}, 0, 760));
+  CHECK(!with({0, 0, 0}, 0, 740));
 }
 
 TEST_CASE("the ground counts once, whether the sample meets it or not") {
