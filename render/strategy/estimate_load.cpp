@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <utility>
 
 #include "render/strategy/draw_list.h"
 
@@ -189,6 +188,115 @@ std::uint64_t bits_of(const Stratum& stratum, std::span<const std::uint64_t> wor
   return bits;
 }
 
+/// Words of slots that stand for others of their stratum.
+class SampledFrustum {
+ public:
+  SampledFrustum(const DrawScene& scene, DrawList& list)
+      : scene_(scene),
+        list_(list),
+        words_(scene.visible().words()),
+        whole_{0, scene.solid_end(), {}, false},
+        strata_(scene.strata().empty() ? std::span(&whole_, 1) : scene.strata()) {
+    for (std::size_t i = 0; i < strata_.size(); ++i) {
+      if (strata_[i].first < strata_[i].end) count(strata_[i], parts_[i]);
+      visible_ += parts_[i].visible;
+      vertices_ += parts_[i].visible * strata_[i].work.vertices;
+    }
+    list.clear();
+    // As many as it can ever be, so that no later frame asks for memory.
+    list.solid.reserve(
+        std::min<std::size_t>(scene.solid_end(), 64 * (kSampledWords + 5 * DrawScene::kMostStrata)));
+    list.inside.assign(words_.size(), 0);
+  }
+
+  /// Their visible slots into list.inside.
+  void choose_words() {
+    for (std::size_t i = 0; i < strata_.size(); ++i) {
+      Part& part = parts_[i];
+      if (part.visible <= 0.0) continue;
+      // Half by number, half by what they take; a few of each.
+      const double number = part.visible / visible_;
+      const double heavy = vertices_ > 0.0 ? part.visible * strata_[i].work.vertices / vertices_ : number;
+      part.looked_at = std::clamp(static_cast<std::size_t>(std::ceil(0.5 * (number + heavy) * kSampledWords)),
+                                  std::min<std::size_t>(4, part.shown), part.shown);
+      each_word(i, [&](std::size_t w) { list_.inside[w] |= bits_of(strata_[i], words_, w); });
+    }
+  }
+
+  /// Once list.inside is what is in the frustum.
+  void list() {
+    for (std::size_t i = 0; i < strata_.size(); ++i) {
+      Part& part = parts_[i];
+      double tested = 0;
+      double inside = 0;
+      each_word(i, [&](std::size_t w) {
+        tested += std::popcount(bits_of(strata_[i], words_, w));
+        for (std::uint64_t bits = bits_of(strata_[i], list_.inside, w); bits != 0; bits &= bits - 1, ++inside)
+          list_.solid.push_back(
+              static_cast<std::uint32_t>(64 * w + static_cast<unsigned>(std::countr_zero(bits))));
+      });
+      part.end = list_.solid.size();
+      list_.tested += static_cast<std::uint64_t>(tested);
+      all_ = all_ && tested == part.visible;
+      part.weight = tested > 0.0 ? part.visible / tested : 0.0;
+      draws_ += part.weight * inside;
+      exact_.add(strata_[i], part.weight * inside);
+    }
+  }
+
+  [[nodiscard]] model::Load load(const ScreenArea& screen) const {
+    const std::size_t count = list_.solid.size();
+    Sample sample(scene_, screen, all_ && count <= kSampledSlots);
+    std::size_t part = 0;
+    for (Steps steps(count); steps.below(count); steps.next()) {
+      while (steps.at() >= parts_[part].end) ++part;
+      sample.add(list_.solid[steps.at()], parts_[part].weight);
+    }
+    const model::Load load = sample.scaled(draws_);
+    return scene_.strata().empty() ? load : exact_.into(load);
+  }
+
+ private:
+  struct Part {
+    std::size_t first_word = 0;
+    std::size_t shown = 0, looked_at = 0;  // words in which something is visible, and those looked at
+    double visible = 0, weight = 0;
+    std::size_t end = 0;  // of its slots in the list
+  };
+
+  void count(const Stratum& stratum, Part& part) const {
+    part.first_word = stratum.first / 64;
+    for (std::size_t w = part.first_word; w <= (stratum.end - 1) / 64; ++w) {
+      const std::uint64_t bits = bits_of(stratum, words_, w);
+      part.visible += std::popcount(bits);
+      part.shown += bits != 0 ? 1 : 0;
+    }
+  }
+  /// Equal steps over the words that have something to show.
+  template <class Body>
+  void each_word(std::size_t i, const Body& body) const {
+    const Part& part = parts_[i];
+    std::size_t rank = 0;
+    std::size_t k = 0;
+    for (std::size_t w = part.first_word; k < part.looked_at; ++w) {
+      if (bits_of(strata_[i], words_, w) == 0) continue;
+      if (rank++ != (2 * k + 1) * part.shown / (2 * part.looked_at)) continue;
+      body(w);
+      ++k;
+    }
+  }
+
+  const DrawScene& scene_;
+  DrawList& list_;
+  std::span<const std::uint64_t> words_;
+  Stratum whole_;
+  std::span<const Stratum> strata_;
+  std::array<Part, DrawScene::kMostStrata> parts_;
+  double visible_ = 0, vertices_ = 0, draws_ = 0;
+  Exact exact_;
+  bool all_ = true;
+};
+
 std::uint64_t solid_bits(const DrawScene& scene, std::size_t word) {
   const std::uint64_t bits = scene.visible().words()[word];
   const std::size_t end = scene.solid_end();
@@ -280,90 +388,11 @@ model::Load load_of_slots(const DrawScene& scene, std::span<const std::uint32_t>
 
 model::Load estimated_in_frustum(const DrawScene& scene, const CullPlanes& planes, const ScreenArea& screen,
                                  DrawList& scratch) {
-  struct Part {
-    std::size_t first_word = 0, end_word = 0;
-    std::size_t shown = 0, looked_at = 0;  // words in which something is visible, and those looked at
-    double visible = 0, inside = 0, weight = 0;
-    std::size_t end = 0;  // of its slots in the list
-  };
-  const Stratum whole{0, scene.solid_end(), {}, false};
-  const std::span<const Stratum> strata = scene.strata().empty() ? std::span(&whole, 1) : scene.strata();
-  const auto words = scene.visible().words();
-  std::array<Part, DrawScene::kMostStrata> parts;
-  double visible = 0;
-  double vertices = 0;
-  for (std::size_t i = 0; i < strata.size(); ++i) {
-    Part& part = parts[i];
-    if (strata[i].first == strata[i].end) continue;
-    part.first_word = strata[i].first / 64;
-    part.end_word = (strata[i].end - 1) / 64 + 1;
-    for (std::size_t w = part.first_word; w < part.end_word; ++w) {
-      const std::uint64_t bits = bits_of(strata[i], words, w);
-      part.visible += std::popcount(bits);
-      part.shown += bits != 0 ? 1 : 0;
-    }
-    visible += part.visible;
-    vertices += part.visible * strata[i].work.vertices;
-  }
-  scratch.clear();
-  // As many as it can ever be, so that no later frame asks for memory.
-  scratch.solid.reserve(
-      std::min<std::size_t>(scene.solid_end(), 64 * (kSampledWords + 5 * DrawScene::kMostStrata)));
-  scratch.inside.assign(words.size(), 0);
-  // Equal steps over the words that have something to show.
-  const auto each_word = [&](std::size_t i, const auto& body) {
-    const Part& part = parts[i];
-    std::size_t rank = 0;
-    std::size_t k = 0;
-    for (std::size_t w = part.first_word; k < part.looked_at; ++w) {
-      if (bits_of(strata[i], words, w) == 0) continue;
-      if (rank++ != (2 * k + 1) * part.shown / (2 * part.looked_at)) continue;
-      body(w);
-      ++k;
-    }
-  };
-  for (std::size_t i = 0; i < strata.size(); ++i) {
-    Part& part = parts[i];
-    if (part.visible <= 0.0) continue;
-    // Half by number, half by what they take; a few of each.
-    const double number = part.visible / visible;
-    const double share =
-        0.5 * (number + (vertices > 0.0 ? part.visible * strata[i].work.vertices / vertices : number));
-    part.looked_at = std::clamp(static_cast<std::size_t>(std::ceil(share * kSampledWords)),
-                                std::min<std::size_t>(4, part.shown), part.shown);
-    each_word(i, [&](std::size_t w) { scratch.inside[w] |= bits_of(strata[i], words, w); });
-  }
+  SampledFrustum sampled(scene, scratch);
+  sampled.choose_words();
   cull_boxes(scene.boxes(), planes, scratch.inside, scratch.inside);
-  Exact exact;
-  double draws = 0;
-  bool all = true;
-  for (std::size_t i = 0; i < strata.size(); ++i) {
-    Part& part = parts[i];
-    double tested = 0;
-    each_word(i, [&](std::size_t w) {
-      tested += std::popcount(bits_of(strata[i], words, w));
-      for (std::uint64_t bits = bits_of(strata[i], scratch.inside, w); bits != 0; bits &= bits - 1) {
-        part.inside += 1;
-        scratch.solid.push_back(
-            static_cast<std::uint32_t>(64 * w + static_cast<unsigned>(std::countr_zero(bits))));
-      }
-    });
-    part.end = scratch.solid.size();
-    scratch.tested += static_cast<std::uint64_t>(tested);
-    all = all && tested == part.visible;
-    part.weight = tested > 0.0 ? part.visible / tested : 0.0;
-    draws += part.weight * part.inside;
-    exact.add(strata[i], part.weight * part.inside);
-  }
-  const std::size_t count = scratch.solid.size();
-  Sample sample(scene, screen, all && count <= kSampledSlots);
-  std::size_t part = 0;
-  for (Steps steps(count); steps.below(count); steps.next()) {
-    while (steps.at() >= parts[part].end) ++part;
-    sample.add(scratch.solid[steps.at()], parts[part].weight);
-  }
-  const model::Load load = sample.scaled(draws);
-  return scene.strata().empty() ? load : exact.into(load);
+  sampled.list();
+  return sampled.load(screen);
 }
 
 model::Load load_of_visible(const DrawScene& scene, const ScreenArea& screen) {

@@ -104,7 +104,7 @@ TEST_CASE("a GPU and a processor that plays one draw the same scenes by differen
     INFO(frames_in_flight
          << " in flight; ms of inline, octree, queries, hi-z; the best, and of the first three\n"
          << in_lines(table));
-    CHECK(table.size() == 17);
+    CHECK(table.size() == 19);
     std::set<std::string> differ, differ_without_hi_z;
     std::set<Method> taken;
     for (const auto& [scene, devices] : table) {
@@ -119,13 +119,14 @@ TEST_CASE("a GPU and a processor that plays one draw the same scenes by differen
       CHECK(gpu.best() == Method::hi_z);
       CHECK(cpu.best() == Method::octree);
     }
-    CHECK(differ ==
-          std::set<std::string>{"house, 75 %", "set5, 75 %", "town_coherent, 10 %", "town_random, 10 %"});
-    CHECK(differ_without_hi_z == std::set<std::string>{"set6, 75 %", "town_coherent, 75 %"});
+    std::set<std::string> expected{"set5, 100 %"};
+    if (frames_in_flight > 1) expected.insert("set6, 20 %");  // where the processor's part is hidden
+    CHECK(differ == expected);
+    CHECK(differ_without_hi_z == std::set<std::string>{"set6, 75 %", "town_random, 75 %"});
     CHECK(taken == std::set<Method>{Method::octree, Method::hi_z});
     // To draw as the other does is dear.
-    CHECK(table.at("set5, 75 %").at(kCpu).loss(Method::hi_z) > 0.1);
-    CHECK(table.at("town_random, 10 %").at(kCpu).loss(Method::hi_z) > 0.2);
-    CHECK(table.at("house, 75 %").at(kGpu).loss(Method::octree) > 0.01);
+    CHECK(table.at("set5, 100 %").at(kCpu).loss(Method::hi_z) > 0.03);
+    CHECK(table.at("set6, 20 %").at(kCpu).loss(Method::hi_z) > 0.05);
+    CHECK(table.at("set5, 100 %").at(kGpu).loss(Method::octree) > 0.005);
   }
 }
