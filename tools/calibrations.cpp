@@ -94,9 +94,9 @@ Result<void> set_costs(render::RendererOptions& options, const std::string& want
     }
     say(quiet, "note: " + kept.error().str());
   }
-  say(quiet,
-      "note: no calibration of this device for such pictures; a quick one runs (sceneplay calibrate "
-      "measures better)");
+  say(quiet, (wanted == "quick" ? std::string("note: a quick calibration runs")
+                                : "note: no calibration of this device for such pictures; a quick one runs") +
+                 " (sceneplay calibrate measures better)");
   render::CalibrationOptions how;
   how.shared_device = options.shared_device;
   how.size = options.size;
@@ -105,6 +105,9 @@ Result<void> set_costs(render::RendererOptions& options, const std::string& want
   Result<render::Calibration> measured = measure_quickly(std::move(how), quiet);
   if (!measured) return forward_error(measured);
   options.costs = measured->costs;
+  if (!measured->clamped.empty())
+    say(quiet, "note: " + std::to_string(measured->clamped.size()) +
+                   " units came out below 0 (the machine is busy?) and were set to 0");
   if (wanted == "auto") {
     // Without a cache it is measured again next time: no reason to stop.
     if (const Result<std::string> stored = store_calibration(*measured); !stored)

@@ -175,12 +175,15 @@ Result<Calibration> parse_calibration(std::string_view text, const std::string& 
   if (text.size() > kMostBytes) return fail(ErrorKind::bad_input, where, "is no calibration: above 1 MiB");
   const json document = json::parse(text, nullptr, false);
   if (document.is_discarded()) return fail(ErrorKind::bad_input, where, "is damaged: no JSON");
+  if (!document.is_object())
+    return fail(ErrorKind::bad_input, where, "must be a JSON object: this is no calibration");
   Reader in(document, where + ": ");
   if (const std::string schema = in.text("schema"); !in.error() && schema != kSchema)
     in.bad("schema", "must be '" + std::string(kSchema) + "': this is no calibration");
   if (const double version = in.number("version", 0, 1e9); !in.error() && version != kVersion)
-    in.bad("version",
-           "this program reads version " + std::to_string(kVersion) + "; run sceneplay calibrate again");
+    in.bad("version", "this program reads version " + std::to_string(kVersion) + ", not " +
+                          std::to_string(static_cast<long long>(version)) +
+                          "; run sceneplay calibrate again");
   Calibration out;
   out.key.device_uuid = in.text("deviceUuid");
   out.key.device = in.text("device");

@@ -70,6 +70,7 @@ void Fit::set(const char* name, double& unit, double value) {
   measured_.emplace_back(name);
 }
 void Fit::set(const char* name, Curve& curve, Curve value) {
+  if (value.x.empty()) return;  // all its steps were left out, as they took too long: it stays rough
   for (double& y : value.y) y = positive(name, y);
   curve = std::move(value);
   measured_.emplace_back(name);
