@@ -271,8 +271,8 @@ class Builder {
       for (const std::size_t g : nested) show(g, seen), show(g, behind);
     }
     const std::uint32_t n = sizes_.boxes[sizes_.boxes.size() / 2];
-    // What vertices cost alone: at 0.7 pixels fragments are a third of it (H200: 25 ns a box, where test sets
-    // drawn so small that there are hardly any take 18).
+    // What vertices cost alone: at 0.7 pixels fragments are a quarter of it (H200: 25 ns a box, where test
+    // sets drawn so small that there are hardly any take 18).
     other({Trial::speck_boxes, n, 36}, [&] { small(boxes_.plain, 0, n, n, 0.0F, kSpeckPx); });
     other({Trial::textured_boxes, n, 36}, [&] { small(boxes_.textured, 0, n, n, 0.0F, kSpeckPx); });
     // Every other one is moved out of the picture, beyond its side.

@@ -52,7 +52,7 @@ struct UnitCosts {
 
   // Device.
   std::array<Curve, kShadings>
-      draw_s;  ///< t_state, t_vert: one draw, by vertices shaded in it (line_at), hardly a fragment
+      draw_s;  ///< t_state, t_vert: one draw, by vertices shaded in it (line_at), without fragments
   double instance_saves_s = 0;  ///< against a draw of its own, one of several instances of a command
   double triangle_s = 0;  ///< and each triangle of it, beside its vertices as far as triangle_overlap says
   std::array<Curve, kShadings> fragment_s;  ///< t_frag: one fragment, by the share of the screen covered (at)

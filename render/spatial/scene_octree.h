@@ -20,10 +20,9 @@ class SceneOctree {
   /// The same put off. What is in the tree is compared with what is visible, 64 slots at a time, and only
   /// what moved is remembered: O(moved + slots / 64).
   void note(const timeline::ChangeSet& changes);
-  /// Does about `slots` slots' worth of what was put off; true when nothing is left. All changes of the scene
-  /// must have been noted. Until then the tree is
-  /// of no use. What happened to a slot in between does not matter: it is compared with the scene as it is
-  /// now.
+  /// Does about `slots` slots' worth of what was put off; true when nothing is left. Until then the tree is
+  /// of no use. All changes of the scene must have been noted; what happened to a slot in between does not
+  /// matter: it is compared with the scene as it is now.
   bool catch_up(std::size_t slots);
   [[nodiscard]] bool behind() const { return pending_slots_ > 0 || !refreshed_; }
   /// Slots put off.

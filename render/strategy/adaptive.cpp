@@ -245,8 +245,8 @@ void Adaptive::learn_of_last_frame() {
   learn_update(planned_update_s_, planned_changed_ * std::max(1.0, facts_.height),
                static_cast<double>(counted.refreshed_chunks), static_cast<double>(counted.refreshed_slots));
   rerecorded_draws_.add(tree_->rerecorded_draws());
-  refreshed_chunks_.add(static_cast<double>(tree_->counters().refreshed_chunks));
-  refreshed_slots_.add(static_cast<double>(tree_->counters().refreshed_slots));
+  refreshed_chunks_.add(static_cast<double>(counted.refreshed_chunks));
+  refreshed_slots_.add(static_cast<double>(counted.refreshed_slots));
 }
 
 /// T_upd(H) against what its units say. They come from boxes that appear in order; in a town whose bricks

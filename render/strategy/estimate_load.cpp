@@ -68,12 +68,13 @@ class Sample {
   void add(std::uint32_t slot, double weight = 1.0) {
     const DrawPrimitive& primitive = scene_.primitive(slot);
     if (!all_ && scene_.large(slot)) return;
+    const bool with_textures = textured(slot);
     spots_[taken_++] = {screen_.spot(scene_.boxes().get(slot)), primitive.work.covered_share, weight,
-                        textured(slot)};
+                        with_textures};
     weights_ += weight;
     vertices_ += weight * primitive.work.vertices;
     triangles_ += weight * primitive.work.triangles;
-    textured_ += textured(slot) ? weight : 0.0;
+    textured_ += with_textures ? weight : 0.0;
   }
 
   [[nodiscard]] double vertices() const { return vertices_; }
