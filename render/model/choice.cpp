@@ -110,7 +110,7 @@ void Choice::pass(double elapsed, double frame_s) {
   since_trial_ += elapsed;
   trial_left_ = std::max(0.0, trial_left_ - elapsed);
   penalty_ *= std::pow(0.995, elapsed);
-  if (trial_purse_s_ < 0.0) trial_purse_s_ = options_.advance_frames * frame_s;
+  if (trial_purse_s_ < 0.0) trial_purse_s_ = std::min(options_.advance_frames * frame_s, options_.advance_s);
   trial_purse_s_ += options_.trial_share * elapsed * frame_s;
 }
 
@@ -168,9 +168,14 @@ bool Choice::far_better(const Offer& other, const Offer& now) const {
   return cut_ && other.ready && now.frame_s - other.frame_s >= options_.at_once * now.frame_s;
 }
 
-bool Choice::trial_lost(const Offer& now, const Offer& best) const {
-  return in_trial() && since_change_ >= options_.trial_judged_frames && best.ready &&
-         now.frame_s > (1.0 + options_.trial_loss) * best.frame_s;
+bool Choice::lost(const Offer& now, const Offer& best, double elapsed) {
+  if (trial_left_ <= 0.0 || !best.ready) return false;
+  const double more_s = now.frame_s - best.frame_s;
+  if (more_s > options_.margin * now.frame_s) kept_lost_s_ += more_s * (cut_ ? 1.0 : elapsed);
+  if (in_trial() && since_change_ >= options_.trial_judged_frames &&
+      more_s > options_.trial_loss * best.frame_s)
+    return true;
+  return kept_lost_s_ >= options_.kept_loss_frames * (1.0 + penalty_) * now.frame_s;
 }
 
 Choice::Decision Choice::decide(std::span<const Offer> offers, std::size_t present, std::uint32_t elapsed,
@@ -191,7 +196,7 @@ Choice::Decision Choice::decide(std::span<const Offer> offers, std::size_t prese
   d.verdict.rival_s = offers[best].frame_s;
   if (!now.possible) {
     d.take = best;
-  } else if (trial_lost(now, offers[best])) {
+  } else if (lost(now, offers[best], elapsed)) {
     d.verdict.reason = Reason::cheaper;
     d.take = best;
   } else if (trial_left_ > 0.0 && !far_better(offers[best], now)) {
@@ -234,6 +239,7 @@ void Choice::changed(const Decision& decision) {
   }
   trial_left_ = options_.trial_frames;
   since_change_ = 0;
+  kept_lost_s_ = 0;
   wanted_frames_ = 0;
   missed_s_ = 0;
 }

@@ -91,9 +91,15 @@ struct ChoiceOptions {
   /// And so many frames' time in advance. Without it, building an octree of 200 000 objects for a first trial
   /// (60 ms) is put off for 800 frames of 8 ms.
   double advance_frames = 12;
-  double trial_frames = 20;         ///< how long one takes, and how long any way is kept
-  double trial_judged_frames = 8;   ///< but a trial is over after so many
-  double trial_loss = 0.05;         ///< when its frames take so much more than others would
+  /// But no more seconds: of frames that take 0.2 s each, twelve would be noticed, and of a run of twenty be
+  /// the most. Ways that are predicted to be near are tried there, others believed.
+  double advance_s = 0.1;
+  double trial_frames = 20;        ///< how long one takes, and how long any way is kept
+  double trial_judged_frames = 8;  ///< but a trial is over after so many
+  double trial_loss = 0.05;        ///< when its frames take so much more than others would
+  /// And any way that was just taken is left when it has cost so many frames' time more than another (one and
+  /// a half: a way that takes three times as long, after three frames), of which changes in a row make more.
+  double kept_loss_frames = 1.5;
   double trial_reach = 1.3;         ///< only of ways predicted to take at most this much more
   double trial_again_frames = 600;  ///< a way is tried again after so many
 };
@@ -133,8 +139,9 @@ class Choice {
                                                 double elapsed);
   void pass(double elapsed, double frame_s);
   [[nodiscard]] bool far_better(const Offer& other, const Offer& now) const;
-  /// A trial that lasted long enough to be judged, and loses.
-  [[nodiscard]] bool trial_lost(const Offer& now, const Offer& best) const;
+  /// A way that was just taken, and loses: a trial that lasted long enough to be judged, or any when it lost
+  /// enough.
+  [[nodiscard]] bool lost(const Offer& now, const Offer& best, double elapsed);
 
   ChoiceOptions options_;
   std::size_t wanted_ = 0;
@@ -144,6 +151,7 @@ class Choice {
   double since_trial_ = 1e6;
   double penalty_ = 0;
   double trial_left_ = 0;      // frames
+  double kept_lost_s_ = 0;     // meanwhile, to what would have been better
   double trial_purse_s_ = -1;  // below 0: the advance was not paid yet
   bool after_trial_ = false;
   bool cut_ = false;

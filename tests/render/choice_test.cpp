@@ -199,9 +199,45 @@ TEST_CASE("a trial that loses is over as soon as it can be judged, one that is n
     return frames;
   };
   const ChoiceOptions options;
-  CHECK(trial_frames(8e-3, options) == static_cast<int>(options.trial_judged_frames));
-  CHECK(trial_frames(8e-3, {.at_once = 10, .trial_loss = 10}) >= static_cast<int>(options.trial_frames));
+  CHECK(trial_frames(5e-3, options) == static_cast<int>(options.trial_judged_frames));
+  CHECK(trial_frames(12e-3, options) < static_cast<int>(options.trial_judged_frames));
+  CHECK(trial_frames(8e-3, {.at_once = 10, .trial_loss = 10, .kept_loss_frames = 1e6}) >=
+        static_cast<int>(options.trial_frames));
   CHECK(trial_frames(4.1e-3, options) >= static_cast<int>(options.trial_frames));
+}
+
+TEST_CASE("a way that was just taken is left when it turns out to lose much") {
+  const auto kept_frames = [](double octree_s) {
+    std::array<Offer, 2> offers{Offer{Method::inline_frustum, 5e-3, 0, true, true},
+                                Offer{Method::octree, 4e-3, 0, true, true}};
+    Choice choice({.trial_share = 0});
+    Choice::Decision d;
+    for (int i = 0; i < 3; ++i) d = choice.decide(offers, 0, 1, nullptr);
+    REQUIRE(d.take == 1);
+    choice.changed(d);
+    offers[1].frame_s = octree_s;  // very much changes from now on
+    for (int i = 1; i < 100; ++i) {
+      if (choice.decide(offers, 1, 1, nullptr).take == 0) return i;
+    }
+    return 100;
+  };
+  CHECK(kept_frames(15e-3) == 3);
+  CHECK(kept_frames(5.5e-3) == 17);  // lost 1.5 of them
+  CHECK(kept_frames(5.2e-3) >= 20);  // little: as long as any
+}
+
+TEST_CASE("trials of long frames are not paid in advance, but for ways that are near") {
+  const auto trials = [](double frame_s, double other) {
+    Correction correction;
+    correction.measured(Method::inline_frustum, 100, {frame_s, frame_s}, {frame_s, frame_s});
+    const std::array offers{Offer{Method::inline_frustum, frame_s, 0, true, true},
+                            Offer{Method::hi_z, other * frame_s, 0, true, true}};
+    return Choice().decide(offers, 0, 1, &correction).trial;
+  };
+  CHECK(trials(5e-3, 1.25));
+  CHECK(trials(40e-3, 1.1));
+  CHECK(!trials(40e-3, 1.25));
+  CHECK(!trials(0.2, 1.05));
 }
 
 TEST_CASE("the correction is bounded, slow, and tells the machine from the way") {
