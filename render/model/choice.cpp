@@ -21,6 +21,16 @@ std::size_t index(Method method) {
   return static_cast<std::size_t>(method);
 }
 
+/// The best of the others, of those that are `ready`; offers.size(): there is none.
+std::size_t best_of(std::span<const Offer> offers, std::size_t present, bool ready) {
+  std::size_t best = offers.size();
+  for (std::size_t i = 0; i < offers.size(); ++i) {
+    if (i == present || !offers[i].possible || (ready && !offers[i].ready)) continue;
+    if (best == offers.size() || offers[i].frame_s < offers[best].frame_s) best = i;
+  }
+  return best;
+}
+
 }  // namespace
 
 void Correction::learn(Side& side, Method method, bool fresh, bool machines, double ratio) const {
@@ -168,14 +178,20 @@ bool Choice::far_better(const Offer& other, const Offer& now) const {
   return cut_ && other.ready && now.frame_s - other.frame_s >= options_.at_once * now.frame_s;
 }
 
-bool Choice::lost(const Offer& now, const Offer& best, double elapsed) {
-  if (trial_left_ <= 0.0 || !best.ready) return false;
-  const double more_s = now.frame_s - best.frame_s;
+std::optional<std::size_t> Choice::lost_to(std::span<const Offer> offers, std::size_t present,
+                                           double elapsed) {
+  if (trial_left_ <= 0.0) return std::nullopt;
+  // While the best is not ready yet, the best of those that are.
+  const Offer& now = offers[present];
+  const std::size_t best = best_of(offers, present, true);
+  if (best == offers.size()) return std::nullopt;
+  const double more_s = now.frame_s - offers[best].frame_s;
   if (more_s > options_.margin * now.frame_s) kept_lost_s_ += more_s * (cut_ ? 1.0 : elapsed);
-  if (in_trial() && since_change_ >= options_.trial_judged_frames &&
-      more_s > options_.trial_loss * best.frame_s)
-    return true;
-  return kept_lost_s_ >= options_.kept_loss_frames * (1.0 + penalty_) * now.frame_s;
+  const bool judged = in_trial() && since_change_ >= options_.trial_judged_frames &&
+                      more_s > options_.trial_loss * offers[best].frame_s;
+  const double most_frames = options_.kept_loss_frames + options_.penalty_frames * penalty_;
+  if (judged || kept_lost_s_ >= most_frames * now.frame_s) return best;
+  return std::nullopt;
 }
 
 Choice::Decision Choice::decide(std::span<const Offer> offers, std::size_t present, std::uint32_t elapsed,
@@ -186,19 +202,15 @@ Choice::Decision Choice::decide(std::span<const Offer> offers, std::size_t prese
   Decision d;
   d.take = present;
   d.verdict = {now.method, now.method, now.frame_s, now.frame_s, Reason::alone};
-  std::size_t best = offers.size();
-  for (std::size_t i = 0; i < offers.size(); ++i) {
-    if (i == present || !offers[i].possible) continue;
-    if (best == offers.size() || offers[i].frame_s < offers[best].frame_s) best = i;
-  }
+  const std::size_t best = best_of(offers, present, false);
   if (best == offers.size()) return d;
   d.verdict.rival = offers[best].method;
   d.verdict.rival_s = offers[best].frame_s;
   if (!now.possible) {
     d.take = best;
-  } else if (lost(now, offers[best], elapsed)) {
+  } else if (const std::optional<std::size_t> winner = lost_to(offers, present, elapsed)) {
     d.verdict.reason = Reason::cheaper;
-    d.take = best;
+    d.take = *winner;
   } else if (trial_left_ > 0.0 && !far_better(offers[best], now)) {
     d.verdict.reason = Reason::trial;
     return d;

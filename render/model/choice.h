@@ -97,8 +97,8 @@ struct ChoiceOptions {
   double trial_frames = 20;        ///< how long one takes, and how long any way is kept
   double trial_judged_frames = 8;  ///< but a trial is over after so many
   double trial_loss = 0.05;        ///< when its frames take so much more than others would
-  /// And any way that was just taken is left when it has cost so many frames' time more than another (one and
-  /// a half: a way that takes three times as long, after three frames), of which changes in a row make more.
+  /// And any way that was just taken is left when it has cost so many frames' time more than another that is
+  /// ready (one and a half: a way that takes three times as long, after three frames), and penalty_frames.
   double kept_loss_frames = 1.5;
   double trial_reach = 1.3;         ///< only of ways predicted to take at most this much more
   double trial_again_frames = 600;  ///< a way is tried again after so many
@@ -139,9 +139,10 @@ class Choice {
                                                 double elapsed);
   void pass(double elapsed, double frame_s);
   [[nodiscard]] bool far_better(const Offer& other, const Offer& now) const;
-  /// A way that was just taken, and loses: a trial that lasted long enough to be judged, or any when it lost
-  /// enough.
-  [[nodiscard]] bool lost(const Offer& now, const Offer& best, double elapsed);
+  /// Another that is to be taken instead of a way that was just taken, and loses: a trial that lasted long
+  /// enough to be judged, or any when it lost enough.
+  [[nodiscard]] std::optional<std::size_t> lost_to(std::span<const Offer> offers, std::size_t present,
+                                                   double elapsed);
 
   ChoiceOptions options_;
   std::size_t wanted_ = 0;

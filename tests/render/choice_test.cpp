@@ -222,6 +222,19 @@ TEST_CASE("a way that was just taken is left when it turns out to lose much") {
     return 100;
   };
   CHECK(kept_frames(15e-3) == 3);
+  // Though another that has to be prepared would be better still.
+  std::array<Offer, 3> offers{Offer{Method::inline_frustum, 5e-3, 0, true, true},
+                              Offer{Method::hi_z, 4e-3, 0, true, true},
+                              Offer{Method::octree, 9e-3, 1e-3, true, false}};
+  Choice choice({.trial_share = 0});
+  Choice::Decision d;
+  for (int i = 0; i < 3; ++i) d = choice.decide(offers, 0, 1, nullptr);
+  REQUIRE(d.take == 1);
+  choice.changed(d);
+  offers[1].frame_s = 15e-3;
+  offers[2].frame_s = 4e-3;
+  for (int i = 0; i < 3; ++i) d = choice.decide(offers, 1, 1, nullptr);
+  CHECK(d.take == 0);
   CHECK(kept_frames(5.5e-3) == 17);  // lost 1.5 of them
   CHECK(kept_frames(5.2e-3) >= 20);  // little: as long as any
 }
