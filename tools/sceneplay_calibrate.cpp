@@ -54,7 +54,8 @@ std::string table(const render::Calibration& c) {
     };
     const auto points = [&](const render::model::Curve& curve, const std::string& more) {
       for (std::size_t i = 0; i < curve.x.size(); ++i)
-        add(duration_text(curve.y[i]), ", " + more + number_text(curve.x[i]) + " " + std::string(unit.x));
+        add(unit.share ? number_text(curve.y[i]) : duration_text(curve.y[i]),
+            ", " + more + number_text(curve.x[i]) + " " + std::string(unit.x));
     };
     if (unit.value != nullptr) {
       const double value = c.costs.*unit.value;

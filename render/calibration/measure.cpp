@@ -34,6 +34,7 @@ bool from_empty(Trial trial) {
     case Trial::textured_boxes:
     case Trial::unshared_meshes:
     case Trial::meshes:
+    case Trial::speck_meshes:
     case Trial::textured_meshes:
     case Trial::layers:
     case Trial::textured_layers:

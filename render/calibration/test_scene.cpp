@@ -273,7 +273,9 @@ class Builder {
     const std::uint32_t n = sizes_.boxes[sizes_.boxes.size() / 2];
     // What vertices cost alone: at 0.7 pixels fragments are a quarter of it (H200: 25 ns a box, where test
     // sets drawn so small that there are hardly any take 18).
-    other({Trial::speck_boxes, n, 36}, [&] { small(boxes_.plain, 0, n, n, 0.0F, kSpeckPx); });
+    for (const std::uint32_t specks : sizes_.specks)
+      other({Trial::speck_boxes, specks, 36},
+            [&] { small(boxes_.plain, 0, specks, specks, 0.0F, kSpeckPx); });
     other({Trial::textured_boxes, n, 36}, [&] { small(boxes_.textured, 0, n, n, 0.0F, kSpeckPx); });
     // Every other one is moved out of the picture, beyond its side.
     const float aside =
@@ -294,19 +296,26 @@ class Builder {
       const std::uint32_t n =
           std::clamp(sizes_.mesh_vertices / each, 4U, sizes_.boxes[sizes_.boxes.size() / 2]);
       // Each of the triangles that face the viewer covers about a quarter of a fragment.
-      const float side = vertices <= 3 ? kSpeckPx : 0.5F * std::sqrt(static_cast<float>(each) / 6.0F);
-      const double share = vertices <= 3 ? 0.0
-                                         : n * glm::quarter_pi<double>() * side * side /
-                                               (static_cast<double>(size_.x) * size_.y);
-      if (share > 0.5) continue;  // too small a picture for these
+      const float quarter_px = 0.5F * std::sqrt(static_cast<float>(each) / 6.0F);
+      const auto share = [&](float side_px) {
+        return vertices <= 3 ? 0.0
+                             : n * glm::quarter_pi<double>() * side_px * side_px /
+                                   (static_cast<double>(size_.x) * size_.y);
+      };
+      if (share(quarter_px) > 0.5) continue;  // too small a picture for these
+      const auto sized = [&](Trial trial, MeshId mesh, std::uint32_t count, float side_px) {
+        other({trial, count, each, 1, share(side_px)}, [&] { small(mesh, 0, count, count, 0.0F, side_px); });
+      };
       const auto many = [&](Trial trial, MeshId mesh) {
-        other({trial, n, each, 1, share}, [&] { small(mesh, 0, n, n, 0.0F, side); });
+        sized(trial, mesh, n, vertices <= 3 ? kSpeckPx : quarter_px);
       };
       const Pair unshared =
           all_ ? add_geometry(vertices <= 3 ? geometry : without_indices(geometry)) : boxes_;
       many(Trial::unshared_meshes, unshared.plain);
       if (vertices <= 3 || vertices != sizes_.vertices.back()) continue;
-      many(Trial::meshes, all_ ? add_geometry(std::move(geometry)).plain : boxes_.plain);
+      const MeshId shared = all_ ? add_geometry(std::move(geometry)).plain : boxes_.plain;
+      many(Trial::meshes, shared);
+      sized(Trial::speck_meshes, shared, 4 * n, kSpeckPx / 0.5F * quarter_px);
       many(Trial::textured_meshes, unshared.textured);
     }
   }
@@ -389,12 +398,15 @@ TestSizes test_sizes(bool software_device, bool quick) {
   if (software_device) {
     s.boxes =
         quick ? std::vector<std::uint32_t>{200, 1600} : std::vector<std::uint32_t>{100, 400, 1600, 6400};
+    s.specks = quick ? std::vector<std::uint32_t>{1600, 12'800}
+                     : std::vector<std::uint32_t>{1600, 6400, 25'600, 102'400};
     s.vertices =
         quick ? std::vector<std::uint32_t>{3, 3000} : std::vector<std::uint32_t>{3, 150, 600, 3000, 30'000};
-    s.mesh_vertices = 60'000;
+    s.mesh_vertices = 600'000;
   } else {
     s.boxes = quick ? std::vector<std::uint32_t>{2000, 20'000}
                     : std::vector<std::uint32_t>{1000, 4000, 16'000, 64'000};
+    s.specks = quick ? std::vector<std::uint32_t>{20'000} : std::vector<std::uint32_t>{16'000, 64'000};
     s.vertices = quick ? std::vector<std::uint32_t>{3, 3000}
                        : std::vector<std::uint32_t>{3, 150, 600, 3000, 12'000, 60'000, 120'000};
     s.mesh_vertices = 2'000'000;

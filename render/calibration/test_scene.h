@@ -20,6 +20,7 @@ enum class Trial : std::uint8_t {
   unshared_meshes,  ///< a triangle; spheres of `vertices` each whose triangles share none (D: growing
                     ///< batchSize)
   meshes,           ///< the same, sharing
+  speck_meshes,     ///< these so small that hardly any triangle covers anything
   textured_meshes,  ///< `unshared_meshes` with textures
   layers,           ///< `layers` quads over `share` of the picture, every one in front of those before
   textured_layers,  ///< the same with textures
@@ -60,6 +61,7 @@ struct TestScene {
 
 struct TestSizes {
   std::vector<std::uint32_t> boxes;     ///< numbers of boxes, ascending
+  std::vector<std::uint32_t> specks;    ///< numbers of speck_boxes, ascending from the middle one of `boxes`
   std::vector<std::uint32_t> vertices;  ///< of a mesh, ascending; about, spheres come in steps
   std::uint32_t mesh_vertices = 0;      ///< of all meshes of a step together
   std::vector<double> shares;           ///< of the picture, as D: 1, 3/4, 1/2, 1/4, 1/8, 1/16

@@ -203,6 +203,19 @@ double outlines(const Load& load) {
   return load.draws * std::sqrt(seen * each);
 }
 
+double triangles_s(const Load& load, const UnitCosts& c) {
+  if (load.triangles <= 0.0) return 0.0;
+  // Of those that face the viewer, this share covers a sample (of four a fragment), against as many where
+  // each covers a quarter of a fragment.
+  const double each = 2.0 * load.fragments / load.triangles;
+  const double covering = std::min(1.0, std::expm1(-4.0 * each) / std::expm1(-1.0));
+  return load.triangles * (c.speck_triangle_s + covering * (c.triangle_s - c.speck_triangle_s));
+}
+
+double bulk_factor(double triangles, const UnitCosts& c) {
+  return c.bulk.x.empty() ? 1.0 : c.bulk.at(triangles);
+}
+
 GpuStages device_stages(const Load& load, double screen_pixels, const UnitCosts& c) {
   if (load.draws <= 0.0) return {};
   GpuStages out;
@@ -212,8 +225,8 @@ GpuStages device_stages(const Load& load, double screen_pixels, const UnitCosts&
   const std::array vertices{
       Work{load.draws, mixed(c.draw_s, load.textured_share, &Curve::line_at, per_draw)}};
   const double instances_save_s = (load.draws - commands) * std::min(c.instance_saves_s, command_s(load, c));
-  out.vertices_s =
-      beside_s(work_s(vertices) - instances_save_s, load.triangles * c.triangle_s, c.triangle_overlap);
+  out.vertices_s = bulk_factor(load.triangles, c) *
+                   beside_s(work_s(vertices) - instances_save_s, triangles_s(load, c), c.triangle_overlap);
   const Shaded s = shaded_fragments(load, screen_pixels);
   const double shade_s = mixed(c.fragment_s, textured_fragments(load), &Curve::at, s.covered_share);
   const std::array fragments{Work{s.shaded, shade_s}, Work{s.hidden, c.hidden_fragment_s}};

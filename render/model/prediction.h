@@ -120,6 +120,11 @@ struct Shaded {
 /// Half of the triangles face the viewer; of those smaller than a fragment, only as many as fragments count.
 [[nodiscard]] double outlines(const Load& load);
 
+/// What triangles cost beside their vertices: of those smaller than a fragment, many cover no sample.
+[[nodiscard]] double triangles_s(const Load& load, const UnitCosts& costs);
+/// On that and on vertices, when so many are drawn in a frame.
+[[nodiscard]] double bulk_factor(double triangles, const UnitCosts& costs);
+
 /// (2.18) to (2.20) of a load. The cost of a draw's commands is part of T_vert too.
 [[nodiscard]] GpuStages device_stages(const Load& load, double screen_pixels, const UnitCosts& costs);
 

@@ -53,8 +53,11 @@ struct UnitCosts {
   // Device.
   std::array<Curve, kShadings>
       draw_s;  ///< t_state, t_vert: one draw, by vertices shaded in it (line_at), without fragments
+  Curve bulk;  ///< factor on vertices and triangles, by triangles of the frame (at): lavapipe sets up the
+               ///< next batch while one is rasterized, so many take less each
   double instance_saves_s = 0;  ///< against a draw of its own, one of several instances of a command
   double triangle_s = 0;  ///< and each triangle of it, beside its vertices as far as triangle_overlap says
+  double speck_triangle_s = 0;  ///< one so small that it covers nothing: dropped before it is rasterized
   std::array<Curve, kShadings> fragment_s;  ///< t_frag: one fragment, by the share of the screen covered (at)
   double edge_s = 0;                        ///< what outlines of triangles add to t_frag, by outlines()
   double textured_edge_s = 0;               ///< and those of textured ones

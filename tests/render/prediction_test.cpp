@@ -245,11 +245,27 @@ TEST_CASE("predictions: several frames in flight, overlaps, shadows, blended obj
 
 TEST_CASE("predictions: triangles are done beside vertices, or after them") {
   UnitCosts c = units();
-  c.triangle_s = 5;
+  c.triangle_s = c.speck_triangle_s = 5;
   const Load load{10, 360, 0, 0, 0, 200};  // 73 a draw, 100 for its triangles
   CHECK(device_stages(load, 1000, c).vertices_s == Approx(1000));
   c.triangle_overlap = 0;
   CHECK(device_stages(load, 1000, c).vertices_s == Approx(1730));
+}
+
+TEST_CASE("predictions: triangles between all samples cost less, and large frames less each") {
+  UnitCosts c = units();
+  c.triangle_s = 5;
+  c.speck_triangle_s = 1;
+  const auto each = [&](double fragments) { return triangles_s({10, 360, fragments, 0, 0, 200}, c) / 200; };
+  CHECK(each(0) == Approx(1));
+  CHECK(each(25) == Approx(5));  // a quarter of one for each of the 100 that face the eye
+  CHECK(each(1000) == Approx(5));
+  CHECK(each(1) == Approx(1 + 4 * 0.0392 / 0.632).epsilon(0.01));
+  c.triangle_overlap = 0;
+  const Load load{10, 360, 0, 0, 0, 200};
+  const double alone_s = device_stages(load, 1000, c).vertices_s;
+  c.bulk = {{100, 400}, {1, 0.5}};
+  CHECK(device_stages(load, 1000, c).vertices_s == Approx(0.75 * alone_s));  // half way, by factors
 }
 
 TEST_CASE("predictions: outlines grow with the triangles that are seen") {
