@@ -102,12 +102,13 @@ Result<void> add_range(std::string_view text, const std::vector<std::string_view
   if (!step) return forward_error(step);
   if (!(*step > 0.0))
     return fail(ErrorKind::usage, "", "the step of '" + std::string(text) + "' must be above 0");
-  if (*to < *from) return fail(ErrorKind::usage, "", "'" + std::string(text) + "' ends before it begins");
-  const double steps = std::floor((*to - *from) / *step * (1.0 + 1e-12) + 1e-9);
+  const double steps = std::floor(std::abs(*to - *from) / *step * (1.0 + 1e-12) + 1e-9);
   if (steps >= static_cast<double>(kMaxFrames - out.size()))
     return fail(ErrorKind::usage, "", "more than " + human_count(kMaxFrames) + " frames");
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(steps); ++i)
-    out.push_back(std::min(*from + static_cast<double>(i) * *step, *to));
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(steps); ++i) {
+    const double past_s = static_cast<double>(i) * *step;
+    out.push_back(*to < *from ? std::max(*from - past_s, *to) : std::min(*from + past_s, *to));
+  }
   return {};
 }
 

@@ -402,8 +402,8 @@ void add_options(Options& options, FramesRequest& r) {
   options.add(
       "--times",
       text_value(r.times, "LIST",
-                 "seconds, percentages, dates (2024-03-15, 2024-03-15T12:00), FROM:TO:STEP; separated "
-                 "by commas"),
+                 "seconds, percentages, dates (2024-03-15, 2024-03-15T12:00), FROM:TO:STEP, backwards "
+                 "where TO is before FROM; separated by commas"),
       "moments to draw; dates, and steps such as 7d, need a file with a calendar (scenegen schedule)",
       Role::run, "25%,50%,75%,100%");
   options.add("--fps", real_value(r.fps, 0.001, 10000, "N"), "film: pictures a second");

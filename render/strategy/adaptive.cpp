@@ -39,7 +39,7 @@ constexpr double kChooseIdleShare = 0.15;
 /// processor would only wait for the device.
 constexpr double kPrepareShare = 0.2;
 constexpr double kIdleShare = 0.7;
-constexpr std::size_t kSlice = 2048;  ///< slots between two looks at the clock
+constexpr std::size_t kSlice = 512;  ///< slots between two looks at the clock: some 0.1 ms
 /// No more slots than these are behind: the rest is done at once when the octree is taken.
 constexpr std::size_t kNearlyDone = 4096;
 /// Fewer levels of changes in a frame say nothing of what one takes.
@@ -95,7 +95,7 @@ class Adaptive final : public Strategy {
   [[nodiscard]] double idle_s() const;
   [[nodiscard]] bool due() const;
   void learn_of_last_frame();
-  void learn_update(double measured_s, double levels, double chunks, double slots);
+  void learn_update(double measured_s, double levels, double chunks, double slots, bool many = false);
   [[nodiscard]] model::Sides sides_of(model::Method method, const model::FrameFacts& facts) const;
   void gather(const View& view);
   void make_offers();
@@ -252,13 +252,14 @@ void Adaptive::learn_of_last_frame() {
 /// T_upd(H) against what its units say. They come from boxes that appear in order; in a town whose bricks
 /// appear anywhere, out of the processor's caches, it is four times as much, and no other stage is (H200's
 /// machine: 5500 changes a frame, 2.0 ms instead of 0.5).
-void Adaptive::learn_update(double measured_s, double levels, double chunks, double slots) {
+/// `many` changes at a time take less each than those of a frame: it is at least as much.
+void Adaptive::learn_update(double measured_s, double levels, double chunks, double slots, bool many) {
   const model::UnitCosts& costs = context_.costs;
   const double predicted_s =
       levels * costs.intersect_s + chunks * costs.refresh_chunk_s + slots * costs.refresh_slot_s;
   if (levels < kFewLevels || predicted_s <= 0.0 || measured_s <= 0.0) return;
   const double ln = std::log(std::clamp(measured_s / predicted_s, 0.25, 16.0));
-  if (context_.options.correction) update_ln_ += 0.2 * (ln - update_ln_);
+  if (context_.options.correction && (!many || ln > update_ln_)) update_ln_ += 0.2 * (ln - update_ln_);
 }
 
 /// What there is to do in this frame, in all ways. The present way has planned it.
@@ -381,12 +382,11 @@ void Adaptive::prepare() {
   const Octree::Refreshed before = tree_->refreshed();
   while (!tree_->catch_up(kSlice) && seconds_since(start) < budget_s) {
   }
-  // Many at a time take less each than what changes in a frame.
-  if (built_ && pending <= kNearlyDone && tree_->available()) {
+  if (built_ && tree_->available()) {
     const Octree::Refreshed done = tree_->refreshed().since(before);
     learn_update(seconds_since(start),
                  static_cast<double>(pending - tree_->pending()) * std::max(1.0, facts_.height),
-                 static_cast<double>(done.chunks), static_cast<double>(done.slots));
+                 static_cast<double>(done.chunks), static_cast<double>(done.slots), pending > kNearlyDone);
   }
   built_ = built_ || nearly_done();
 }

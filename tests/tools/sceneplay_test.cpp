@@ -35,12 +35,13 @@ TEST_CASE("times: seconds, percentages, ranges") {
   CHECK(parse_times("2:4:0.5", 8).value() == std::vector<double>{2, 2.5, 3, 3.5, 4});
   CHECK(parse_times("0:100%:25%", 8).value() == std::vector<double>{0, 2, 4, 6, 8});
   CHECK(parse_times("0:1:0.1", 8).value().size() == 11);
+  CHECK(parse_times("4:2.2:0.5", 8).value() == std::vector<double>{4, 3.5, 3, 2.5});  // backwards
   // Keys are float32, and what is asked for must meet the key of that name.
   CHECK(parse_times("0.1", 8).value() == std::vector<double>{static_cast<double>(0.1F)});
   CHECK(parse_times("7.93", static_cast<double>(7.93F)).value() ==
         std::vector<double>{static_cast<double>(7.93F)});
   CHECK(parse_times("0:1:0.1", 8).value()[3] == static_cast<double>(0.3F));
-  for (const char* wrong : {"", ",", "1,,2", "a", "-1", "101%", "9", "nan", "inf", "1:2", "2:1:1", "1:2:0",
+  for (const char* wrong : {"", ",", "1,,2", "a", "-1", "101%", "9", "nan", "inf", "1:2", "1:2:0", "2:1:0",
                             "1:2:3:4", "0:8:1e-9"}) {
     INFO(wrong);
     const auto times = parse_times(wrong, 8);
@@ -75,7 +76,6 @@ TEST_CASE("moments are dates too where the file has a calendar") {
       {"2024-02-30", "'2024-02-30': February 2024 has 29 days"},
       {"2024-03-0x", "'2024-03-0x': wanted a date YYYY-MM-DD, with a time YYYY-MM-DDTHH:MM"},
       {"2024-03-01:2024-03-21", "'2024-03-01:2024-03-21' is no FROM:TO:STEP"},
-      {"2024-03-21:2024-03-01:1d", "'2024-03-21:2024-03-01:1d' ends before it begins"},
       {"2024-03-01:2024-03-21:0d", "the step of '2024-03-01:2024-03-21:0d' must be above 0"},
       {"0:5:1y",
        "'1y': wanted a duration: a number of days, or with a unit w, d, h or min (5, 2w, 8h, PT8H)"}};
