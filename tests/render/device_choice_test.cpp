@@ -114,19 +114,17 @@ TEST_CASE("a GPU and a processor that plays one draw the same scenes by differen
       if (gpu.best(3) != cpu.best(3)) differ_without_hi_z.insert(scene);
       if (gpu.best() == cpu.best()) continue;
       differ.insert(scene);
-      // A pyramid of depths and blocks are next to nothing for the GPU, and a third of a frame of few objects
+      // A pyramid of depths and blocks are next to nothing for the GPU, and a sixth of a frame of few objects
       // for the processor.
       CHECK(gpu.best() == Method::hi_z);
       CHECK(cpu.best() == Method::octree);
     }
-    std::set<std::string> expected{"set5, 100 %"};
-    if (frames_in_flight > 1) expected.insert("set6, 20 %");  // where the processor's part is hidden
-    CHECK(differ == expected);
+    CHECK(differ == std::set<std::string>{"set5, 85 %", "set6, 20 %"});
     CHECK(differ_without_hi_z == std::set<std::string>{"set6, 75 %", "town_random, 75 %"});
     CHECK(taken == std::set<Method>{Method::octree, Method::hi_z});
     // To draw as the other does is dear.
-    CHECK(table.at("set5, 100 %").at(kCpu).loss(Method::hi_z) > 0.03);
-    CHECK(table.at("set6, 20 %").at(kCpu).loss(Method::hi_z) > 0.05);
-    CHECK(table.at("set5, 100 %").at(kGpu).loss(Method::octree) > 0.005);
+    CHECK(table.at("set5, 85 %").at(kCpu).loss(Method::hi_z) > 0.03);
+    CHECK(table.at("set6, 20 %").at(kCpu).loss(Method::hi_z) > 0.02);
+    CHECK(table.at("set5, 85 %").at(kGpu).loss(Method::octree) > 0.005);
   }
 }
