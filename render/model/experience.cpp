@@ -27,7 +27,17 @@ double share(double part, double all) {
 }  // namespace
 
 void SlowMean::add(double value) {
+  constexpr int kBelieved = 3;
   const double most = std::max(floor_, leap_ * mean_);
+  const int side = value > most ? 1 : leap_ * std::max(value, floor_) < mean_ ? -1 : 0;
+  if (side == 0 || side * far_ < 0) far_ = 0;
+  nearest_far_ = far_ == 0 ? value : side > 0 ? std::min(nearest_far_, value) : std::max(nearest_far_, value);
+  far_ += side;
+  if (any_ && std::abs(far_) >= kBelieved) {
+    mean_ = nearest_far_;
+    far_ = 0;
+    return;
+  }
   const double counted = std::min(value, most);
   mean_ = any_ ? mean_ + weight_ * (counted - mean_) : counted;
   any_ = true;

@@ -8,7 +8,8 @@
 namespace scenegen::render::model {
 
 /// A mean that forgets, and that one value cannot throw: it counts as at most `leap` times the mean (and
-/// `floor`), so a seek in a scene in which little changes is no sign of much changing.
+/// `floor`), so a seek in a scene in which little changes is no sign of much changing. Three in a row that
+/// are as far off, to the same side, are one, and the nearest of them is the mean.
 class SlowMean {
  public:
   explicit SlowMean(double floor, double weight = 0.1, double leap = 4)
@@ -20,6 +21,8 @@ class SlowMean {
   double floor_, weight_, leap_;
   double mean_ = 0;
   bool any_ = false;
+  int far_ = 0;             // values in a row that were far off; below 0: below the mean
+  double nearest_far_ = 0;  // of them
 };
 
 /// How many different ones there are among `count` things, if a sample of `sampled` of them had `different`:
