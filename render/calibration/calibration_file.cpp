@@ -68,11 +68,11 @@ class Reader {
     for (const json& e : *v) out.push_back(e.get<std::string>());
     return out;
   }
-  model::Curve curve(std::string_view name) {
+  model::Curve curve(std::string_view name, double most = kMostSeconds) {
     const json* v = member(name);
     if (v == nullptr) return {};
     Reader inner(*v, where_ + "/" + std::string(name));
-    model::Curve out{inner.numbers("x", 1e12), inner.numbers("y", kMostSeconds)};
+    model::Curve out{inner.numbers("x", 1e12), inner.numbers("y", most)};
     if (!inner.error_ && out.x.size() != out.y.size())
       inner.error_ = wrong(inner.where_, "x has " + std::to_string(out.x.size()) + " values, y " +
                                              std::to_string(out.y.size()));
@@ -127,7 +127,7 @@ void read_units(Reader& in, model::UnitCosts& costs) {
                                     : unit.bytes ? kMostUnitBytes
                                                  : kMostSeconds);
     } else if (unit.curve != nullptr) {
-      costs.*unit.curve = in.curve(unit.name);
+      costs.*unit.curve = in.curve(unit.name, unit.share ? 1.0 : kMostSeconds);
     } else if (const json* both = in.member(unit.name)) {
       Reader inner(*both, in.where() + "/" + std::string(unit.name));
       for (std::size_t i = 0; i < model::kShadings; ++i)

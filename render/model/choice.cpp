@@ -12,6 +12,7 @@ const double kMostLn = std::log(2.0);
 constexpr std::uint32_t kFresh = 12;
 /// A change is soon when it comes within so many frames after another.
 constexpr double kSoon = 240;
+constexpr double kMostPenalty = 15;
 
 double bounded(double ln) {
   return std::clamp(ln, -kMostLn, kMostLn);
@@ -186,12 +187,20 @@ std::optional<std::size_t> Choice::lost_to(std::span<const Offer> offers, std::s
   const std::size_t best = best_of(offers, present, true);
   if (best == offers.size()) return std::nullopt;
   const double more_s = now.frame_s - offers[best].frame_s;
-  if (more_s > options_.margin * now.frame_s) kept_lost_s_ += more_s * (cut_ ? 1.0 : elapsed);
-  const bool judged = in_trial() && since_change_ >= options_.trial_judged_frames &&
-                      more_s > options_.trial_loss * offers[best].frame_s;
-  const double most_frames = options_.kept_loss_frames + options_.penalty_frames * penalty_;
-  if (judged || kept_lost_s_ >= most_frames * now.frame_s) return best;
-  return std::nullopt;
+  if (more_s <= options_.margin * now.frame_s || cut_) kept_lost_s_ = kept_lost_frames_ = 0;
+  if (more_s <= options_.margin * now.frame_s) return std::nullopt;
+  // Frames before this was first seen may have been of something else.
+  const double frames = kept_lost_s_ > 0.0 ? elapsed : std::min(elapsed, 1.0);
+  kept_lost_frames_ += frames;
+  kept_lost_s_ += more_s * frames;
+  if (in_trial() && since_change_ >= options_.trial_judged_frames &&
+      more_s > options_.trial_loss * offers[best].frame_s)
+    return best;
+  const double most_frames = options_.kept_loss_frames * (1.0 + penalty_ / kMostPenalty);
+  if (kept_lost_frames_ < options_.frames ||
+      kept_lost_s_ < std::max(most_frames * offers[best].frame_s, offers[best].change_s))
+    return std::nullopt;
+  return best;
 }
 
 Choice::Decision Choice::decide(std::span<const Offer> offers, std::size_t present, std::uint32_t elapsed,
@@ -246,12 +255,12 @@ void Choice::changed(const Decision& decision) {
     after_trial_ = true;
   } else {
     // Going back after a trial is what a trial is for.
-    if (since_change_ < kSoon && !after_trial_) penalty_ = std::min(2.0 * penalty_ + 1.0, 15.0);
+    if (since_change_ < kSoon && !after_trial_) penalty_ = std::min(2.0 * penalty_ + 1.0, kMostPenalty);
     after_trial_ = false;
   }
   trial_left_ = options_.trial_frames;
   since_change_ = 0;
-  kept_lost_s_ = 0;
+  kept_lost_s_ = kept_lost_frames_ = 0;
   wanted_frames_ = 0;
   missed_s_ = 0;
 }

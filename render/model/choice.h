@@ -92,13 +92,15 @@ struct ChoiceOptions {
   /// (60 ms) is put off for 800 frames of 8 ms.
   double advance_frames = 12;
   /// But no more seconds: of frames that take 0.2 s each, twelve would be noticed, and of a run of twenty be
-  /// the most. Ways that are predicted to be near are tried there, others believed.
+  /// the most. A trial takes two frames' time at least: above 50 ms the first is saved up for as others are.
   double advance_s = 0.1;
   double trial_frames = 20;        ///< how long one takes, and how long any way is kept
   double trial_judged_frames = 8;  ///< but a trial is over after so many
-  double trial_loss = 0.05;        ///< when its frames take so much more than others would
-  /// And any way that was just taken is left when it has cost so many frames' time more than another that is
-  /// ready (one and a half: a way that takes three times as long, after three frames), and penalty_frames.
+  double trial_loss = 0.05;        ///< when its frames take so much more than one's that is ready
+  /// And any way that was just taken is left when, in at least `frames`, it has cost so many frames of
+  /// another that is ready more than that would have (a way that takes twice as long: after three), after
+  /// changes in a row up to twice as many, and as much as changing costs. Of the other's frames: in a scene
+  /// that grows by a twentieth a frame, the present way's outgrow what was lost.
   double kept_loss_frames = 1.5;
   double trial_reach = 1.3;         ///< only of ways predicted to take at most this much more
   double trial_again_frames = 600;  ///< a way is tried again after so many
@@ -151,8 +153,9 @@ class Choice {
   double since_change_ = 1e6;
   double since_trial_ = 1e6;
   double penalty_ = 0;
-  double trial_left_ = 0;      // frames
-  double kept_lost_s_ = 0;     // meanwhile, to what would have been better
+  double trial_left_ = 0;   // frames
+  double kept_lost_s_ = 0;  // meanwhile, to what would have been better
+  double kept_lost_frames_ = 0;
   double trial_purse_s_ = -1;  // below 0: the advance was not paid yet
   bool after_trial_ = false;
   bool cut_ = false;

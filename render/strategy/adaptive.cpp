@@ -44,7 +44,10 @@ constexpr std::size_t kSlice = 512;  ///< slots between two looks at the clock: 
 constexpr std::size_t kNearlyDone = 4096;
 /// Fewer levels of changes in a frame say nothing of what one takes.
 constexpr double kFewLevels = 500;
-constexpr std::uint64_t kTouchedFrames = 4;  ///< between two counts of the chunks that changes touch
+/// Of frames in which something changes, one in so many counts the chunks that are touched.
+constexpr std::uint32_t kTouchedFrames = 3;
+/// What is left of ln(T_upd(H) / by its units) a frame: half after 350.
+constexpr double kForgetUpdate = 0.998;
 /// So near to being cheaper, the octree is built and kept up to date though it is not taken.
 constexpr double kNear = 1.2;
 /// Frames after a change that say nothing about steady state: commands are recorded for the first time.
@@ -133,6 +136,7 @@ class Adaptive final : public Strategy {
   double update_tree_s_ = 0;                           // in this frame
   double planned_update_s_ = 0, planned_changed_ = 0;  // in the last one
   double update_ln_ = 0;                               // T_upd(H), measured / by its units
+  std::uint32_t touched_turn_ = 0;                     // frames in which something changed
 
   model::FrameFacts exact_;  // at the last decision: what the present way found
   model::FrameFacts facts_;  // the same in steady state, with guesses for the other
@@ -184,8 +188,14 @@ void Adaptive::update(const timeline::ChangeSet& changes) {
   update_tree_s_ = way_ == tree ? seconds_since(start) : 0.0;
   last_changed_ = static_cast<double>(changes.count());
   changed_.add(last_changed_);
-  // Far from being taken, a sample does (a fifth of what the processor takes for 5500 changes a frame).
-  if (way_ != tree && !near() && frame_ % kTouchedFrames != 0) return;
+  if (way_ == tree || near()) {
+    touched_turn_ = 0;
+  } else {
+    // Far from being taken, some do (counting is a fifth of what the processor takes for 5500 changes a
+    // frame), and what the tree took is forgotten: else it might never be near again.
+    update_ln_ *= kForgetUpdate;
+    if (last_changed_ > 0.0 && touched_turn_++ % kTouchedFrames != 0) return;
+  }
   const model::TouchedChunks touched = touched_.count(changes);
   recorded_chunks_.add(touched.recorded);
   changed_chunks_.add(touched.changed);
@@ -261,7 +271,9 @@ void Adaptive::learn_update(double measured_s, double levels, double chunks, dou
   const double predicted_s =
       levels * costs.intersect_s + chunks * costs.refresh_chunk_s + slots * costs.refresh_slot_s;
   if (levels < kFewLevels || predicted_s <= 0.0 || measured_s <= 0.0) return;
-  const double ln = std::log(std::clamp(measured_s / predicted_s, 0.25, 16.0));
+  // A slice that something else interrupted says no more than one that took twice what was thought.
+  const double ln = std::min(std::log(std::clamp(measured_s / predicted_s, 0.25, 16.0)),
+                             many ? update_ln_ + std::log(2.0) : std::log(16.0));
   if (context_.options.correction && (!many || ln > update_ln_)) update_ln_ += 0.2 * (ln - update_ln_);
 }
 

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Regret of choosing: test sets and two dynamic towns, and an animation made of phases (empty, much changing, open, occluded), in every fixed way
+# Regret of choosing: test sets and two dynamic towns, and an animation made of phases (empty, open, much changing, occluded), in every fixed way
 # and adaptively. Prints mean frame times. A software device needs small pictures, a small town, and fewer frames:
 # GRID=4x4 FRAMES=40 SETS="8 17 23" PHASES=0:0.05:0.005,3:3.1:0.02,5:34:1,37:38.9:0.2,39.6:41.6:0.1 tests/bench/adaptive.sh OUTPUT --size 160x90. What is behind
 # OUTPUT goes to sceneplay bench.
