@@ -46,8 +46,9 @@ constexpr std::size_t kNearlyDone = 4096;
 constexpr double kFewLevels = 500;
 /// Of frames in which something changes, one in so many counts the chunks that are touched.
 constexpr std::uint32_t kTouchedFrames = 3;
-/// What is left of ln(T_upd(H) / by its units) a frame: half after 350.
-constexpr double kForgetUpdate = 0.998;
+/// What is left of ln(T_upd(H) / by its units) a frame: half after 3500. (Half after 350, the tree was near
+/// again within a phase of much changing.)
+constexpr double kForgetUpdate = 0.9998;
 /// So near to being cheaper, the octree is built and kept up to date though it is not taken.
 constexpr double kNear = 1.2;
 /// Frames after a change that say nothing about steady state: commands are recorded for the first time.
