@@ -46,9 +46,6 @@ constexpr std::size_t kNearlyDone = 4096;
 constexpr double kFewLevels = 500;
 /// Of frames in which something changes, one in so many counts the chunks that are touched.
 constexpr std::uint32_t kTouchedFrames = 3;
-/// What is left of ln(T_upd(H) / by its units) a frame: half after 3500. (Half after 350, the tree was near
-/// again within a phase of much changing.)
-constexpr double kForgetUpdate = 0.9998;
 /// So near to being cheaper, the octree is built and kept up to date though it is not taken.
 constexpr double kNear = 1.2;
 /// Frames after a change that say nothing about steady state: commands are recorded for the first time.
@@ -193,8 +190,7 @@ void Adaptive::update(const timeline::ChangeSet& changes) {
     touched_turn_ = 0;
   } else {
     // Far from being taken, some do (counting is a fifth of what the processor takes for 5500 changes a
-    // frame), and what the tree took is forgotten: else it might never be near again.
-    update_ln_ *= kForgetUpdate;
+    // frame).
     if (last_changed_ > 0.0 && touched_turn_++ % kTouchedFrames != 0) return;
   }
   const model::TouchedChunks touched = touched_.count(changes);
@@ -272,9 +268,7 @@ void Adaptive::learn_update(double measured_s, double levels, double chunks, dou
   const double predicted_s =
       levels * costs.intersect_s + chunks * costs.refresh_chunk_s + slots * costs.refresh_slot_s;
   if (levels < kFewLevels || predicted_s <= 0.0 || measured_s <= 0.0) return;
-  // A slice that something else interrupted says no more than one that took twice what was thought.
-  const double ln = std::min(std::log(std::clamp(measured_s / predicted_s, 0.25, 16.0)),
-                             many ? update_ln_ + std::log(2.0) : std::log(16.0));
+  const double ln = std::log(std::clamp(measured_s / predicted_s, 0.25, 16.0));
   if (context_.options.correction && (!many || ln > update_ln_)) update_ln_ += 0.2 * (ln - update_ln_);
 }
 

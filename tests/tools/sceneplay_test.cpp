@@ -23,7 +23,7 @@ ProcessResult play(const std::string& line, const ProcessOptions& options = {}) 
 }
 
 std::string wall_file(const TemporaryFolder& folder) {
-  const std::string path = folder.file("wall.glb");
+  std::string path = folder.file("wall.glb");
   REQUIRE(gltf::write(render::test::wall_scene(), path, {}));
   return path;
 }
