@@ -341,6 +341,20 @@ TEST_CASE("what was missed, not how many frames it took, ends waiting after chan
   const int much = frames_until_change(0.7);
   const int little = frames_until_change(0.95);
   CHECK(much < 60);
+  // After a cut that was about another picture: it does not wait as long.
+  const auto waited = [&](bool cut) {
+    Choice again = choice;
+    for (int i = 0; i < 25; ++i) (void)again.decide(offers, present, 1, nullptr);  // no longer just taken
+    offers[present].frame_s = 4e-3;
+    offers[1 - present].frame_s = 0.7 * 4e-3;
+    int frames = 1;
+    while (again.decide(offers, present, 1, nullptr, cut && frames == 1).take == present) ++frames;
+    offers[1 - present].frame_s = 4e-3;
+    return frames;
+  };
+  offers[0].frame_s = offers[1].frame_s = 4e-3;
+  CHECK(waited(false) > 8);
+  CHECK(waited(true) <= 4);
   CHECK(little > 2 * much);
   CHECK(little < 300);
 }
