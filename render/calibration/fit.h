@@ -38,6 +38,23 @@ struct Run {
   }
 };
 
+constexpr auto kPlain = static_cast<std::size_t>(model::Shading::plain);
+constexpr auto kTextured = static_cast<std::size_t>(model::Shading::textured);
+
+/// Cost of one more unit, by how a time grows with its number, from none on.
+template <class X, class Y>
+double slope(const Run& run, Trial trial, const X& x, const Y& y) {
+  std::vector<double> xs{0.0};
+  std::vector<double> ys{0.0};
+  for (const std::size_t i : run.of(trial)) xs.push_back(x(i)), ys.push_back(y(i));
+  return fit_line(xs, ys).slope;
+}
+
+/// More of it never costs less: what noise says otherwise is lifted.
+void rising(model::Curve& curve);
+/// How far two times are apart, the same above and below.
+[[nodiscard]] double squared_log(double a, double b);
+
 /// A run of `octree`, with objects a node.
 using Octrees = std::pair<std::uint32_t, Run>;
 

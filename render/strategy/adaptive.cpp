@@ -186,13 +186,9 @@ void Adaptive::update(const timeline::ChangeSet& changes) {
   update_tree_s_ = way_ == tree ? seconds_since(start) : 0.0;
   last_changed_ = static_cast<double>(changes.count());
   changed_.add(last_changed_);
-  if (way_ == tree || near()) {
-    touched_turn_ = 0;
-  } else {
-    // Far from being taken, some do (counting is a fifth of what the processor takes for 5500 changes a
-    // frame).
-    if (last_changed_ > 0.0 && touched_turn_++ % kTouchedFrames != 0) return;
-  }
+  // Far from being taken, some do (counting is a fifth of what the processor takes for 5500 changes a frame).
+  const bool far = way_ != tree && !near();
+  if (far && last_changed_ > 0.0 && touched_turn_++ % kTouchedFrames != 0) return;
   const model::TouchedChunks touched = touched_.count(changes);
   recorded_chunks_.add(touched.recorded);
   changed_chunks_.add(touched.changed);

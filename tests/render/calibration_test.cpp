@@ -214,6 +214,42 @@ TEST_CASE("calibration: what took too long to be measured stays rough, and the f
   if (!read) FAIL(read.error().str());
 }
 
+TEST_CASE("calibration: triangles, those between samples, and large frames come out as they were put in") {
+  using calibration::Trial;
+  const calibration::TestScene test =
+      calibration::make_test_scene(calibration::test_sizes(true, true), {320, 180});
+  // `many_s`: of each of the most boxes of next to no size.
+  const auto fitted = [&](double many_s) {
+    std::vector<calibration::Measured> results(test.steps.size());
+    std::uint32_t few = 0;
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      const calibration::Step& step = test.steps[i];
+      const bool shared = step.trial == Trial::meshes || step.trial == Trial::speck_meshes;
+      const double triangles = step.draws * step.vertices / 3.0;
+      const double vertices = shared ? 0.5 * triangles : 3.0 * triangles;
+      const double triangle_s = step.trial == Trial::speck_meshes ? 100e-9 : 200e-9;
+      if (step.trial == Trial::speck_boxes && few == 0) few = step.draws;
+      const bool many = step.trial == Trial::speck_boxes && step.draws > few;
+      const bool box = step.trial == Trial::speck_boxes || step.trial == Trial::boxes;
+      calibration::Measured& m = results[i];
+      m.samples = 1;
+      m.steady.device_s = m.steady.gpu_s =
+          1e-3 + (box ? step.draws * (many ? many_s : 5e-6) : triangles * triangle_s + vertices * 40e-9);
+      m.report.facts.in_frustum = {static_cast<double>(step.draws), vertices, 0, 0, 0, triangles};
+    }
+    Calibration out = sample();
+    out.costs = model::rough_costs(true);
+    calibration::Fit(out, 320.0 * 180.0).inline_run({&test, results});
+    return out.costs;
+  };
+  const model::UnitCosts level = fitted(5e-6);
+  CHECK(level.triangle_s == Approx(200e-9).epsilon(0.01));
+  CHECK(level.speck_triangle_s == Approx(100e-9).epsilon(0.01));
+  CHECK(level.bulk.y.back() == Approx(1));
+  CHECK(fitted(4e-6).bulk.y.back() == Approx(0.8));
+  CHECK(fitted(6e-6).bulk.y.back() == 1);  // more never take longer each
+}
+
 TEST_CASE("calibration: measured in a small picture, units are costs") {
   CalibrationOptions options;
   options.device.validation = true;
