@@ -261,6 +261,16 @@ void Choice::changed(const Decision& decision) {
     if (since_change_ < kSoon && !after_trial_) penalty_ = std::min(2.0 * penalty_ + 1.0, kMostPenalty);
     after_trial_ = false;
   }
+  begin();
+}
+
+void Choice::left() {
+  after_trial_ = false;
+  begin();
+}
+
+/// With another way.
+void Choice::begin() {
   trial_left_ = options_.trial_frames;
   since_change_ = 0;
   kept_lost_s_ = kept_lost_frames_ = 0;

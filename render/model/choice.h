@@ -124,6 +124,8 @@ class Choice {
                                 const Correction* correction, bool cut = false);
   /// A decision was carried out. (One that asks for a way that has to be prepared is repeated until then.)
   void changed(const Decision& decision);
+  /// A way was left without a decision, for something in this frame alone.
+  void left();
 
   /// Is a way kept to measure it?
   [[nodiscard]] bool in_trial() const { return after_trial_ && trial_left_ > 0.0; }
@@ -140,6 +142,7 @@ class Choice {
   [[nodiscard]] std::optional<Reason> objection(const Offer& now, const Offer& other, std::size_t number,
                                                 double elapsed);
   void pass(double elapsed, double frame_s);
+  void begin();
   [[nodiscard]] bool far_better(const Offer& other, const Offer& now) const;
   /// Another that is to be taken instead of a way that was just taken, and loses: a trial that lasted long
   /// enough to be judged, or any when it lost enough.

@@ -50,6 +50,12 @@ constexpr std::uint32_t kTouchedFrames = 3;
 constexpr double kNear = 1.2;
 /// Frames after a change that say nothing about steady state: commands are recorded for the first time.
 constexpr std::uint32_t kSettling = 2;
+/// So many frames after a cut say nothing of how long the processor waits in what is shown now.
+constexpr std::uint32_t kAfterCut = 8;
+/// So many times the usual changes are a burst: a seek, or a phase that ends. What it costs the octree at once
+/// is weighed against so many frames without it, until it has followed in slices.
+constexpr double kBurst = 4;
+constexpr double kBurstFrames = 20;
 /// So long it may take until queries have found out what is hidden.
 constexpr std::uint32_t kGathering = 40;
 
@@ -98,6 +104,8 @@ class Adaptive final : public Strategy {
   [[nodiscard]] bool due() const;
   void learn_of_last_frame();
   void learn_update(double measured_s, double levels, double chunks, double slots, bool many = false);
+  [[nodiscard]] double units_of_update_s(double levels, double chunks, double slots) const;
+  void leave_in_burst(const model::TouchedChunks& touched);
   [[nodiscard]] model::Sides sides_of(model::Method method, const model::FrameFacts& facts) const;
   void gather(const View& view);
   void make_offers();
@@ -146,6 +154,7 @@ class Adaptive final : public Strategy {
   std::uint64_t decided_frame_ = 0;
   Picture picture_;   // of the last frame planned
   bool cut_ = false;  // it shows something else than the one before
+  std::uint32_t since_cut_ = 0;
   std::uint32_t since_change_ = 1000;
   double choose_s_ = 0;                 // mean
   double cpu_s_ = 2e-3, gpu_s_ = 2e-3;  // means of what frames took
@@ -181,23 +190,43 @@ Adaptive::Adaptive(const StrategyContext& context)
 void Adaptive::update(const timeline::ChangeSet& changes) {
   flat_->update(changes);
   device_->update(changes);
+  last_changed_ = static_cast<double>(changes.count());
+  // Far from being taken, some do (counting is a fifth of what the processor takes for 5500 changes a frame).
+  const bool far = way_ != tree && !near();
+  if (!far || last_changed_ == 0.0 || touched_turn_++ % kTouchedFrames == 0) {
+    const model::TouchedChunks touched = touched_.count(changes);
+    if (way_ == tree && last_changed_ > kBurst * changed_.value()) leave_in_burst(touched);
+    recorded_chunks_.add(touched.recorded);
+    changed_chunks_.add(touched.changed);
+    left_chunks_.add(touched.left);
+  }
+  changed_.add(last_changed_);
   const auto start = Clock::now();
   way_ == tree ? tree_->update(changes) : tree_->note(changes);
   update_tree_s_ = way_ == tree ? seconds_since(start) : 0.0;
-  last_changed_ = static_cast<double>(changes.count());
-  changed_.add(last_changed_);
-  // Far from being taken, some do (counting is a fifth of what the processor takes for 5500 changes a frame).
-  const bool far = way_ != tree && !near();
-  if (far && last_changed_ > 0.0 && touched_turn_++ % kTouchedFrames != 0) return;
-  const model::TouchedChunks touched = touched_.count(changes);
-  recorded_chunks_.add(touched.recorded);
-  changed_chunks_.add(touched.changed);
-  left_chunks_.add(touched.left);
+}
+
+/// More changes at once than the octree can follow in a frame are put off and another way draws, where that
+/// costs less. (Town of 370 000 objects on the H200: 8 ms for a jump of two seconds, beside frames of 2.7 that
+/// are 0.1 longer by `hi-z`.)
+void Adaptive::leave_in_burst(const model::TouchedChunks& touched) {
+  const Way other =
+      offers_[device].possible && offers_[device].frame_s < offers_[flat].frame_s ? device : flat;
+  const double now_s = offers_[tree].frame_s, other_s = offers_[other].frame_s;
+  if (context_.options.change_every != 0 || now_s <= 0.0 || other_s <= 0.0) return;
+  const double follow_s =
+      std::exp(update_ln_) * units_of_update_s(last_changed_ * std::max(1.0, facts_.height), touched.changed,
+                                               std::min(facts_.visible_slots, touched.left * 0.7 * per_node_));
+  if (follow_s <= 0.5 * now_s || follow_s <= kBurstFrames * (other_s - now_s)) return;
+  way_ = other;
+  since_change_ = 0;
+  choice_.left();
 }
 
 /// So long the processor would only wait for the device. A device that is the processor leaves nothing idle.
 double Adaptive::idle_s() const {
   if (context_.frames_in_flight <= 1 || context_.device.info.type == "CPU") return 0.0;
+  if (since_cut_ < kAfterCut) return 0.0;
   return std::max(0.0, gpu_s_ - cpu_s_);
 }
 
@@ -218,6 +247,7 @@ void Adaptive::plan(const View& view) {
   planned_changed_ = last_changed_;
   const Picture picture = picture_of(view, context_.scene);
   cut_ = !alike(picture_, picture, context_.scene.bounds_m());
+  since_cut_ = cut_ ? 0 : since_cut_ + 1;
   picture_ = picture;
   // Memory ran out while it drew.
   if ((way_ == tree && !tree_->available()) || (way_ == device && !device_->available())) way_ = flat;
@@ -260,12 +290,15 @@ void Adaptive::learn_of_last_frame() {
 /// machine: 5500 changes a frame, 2.0 ms instead of 0.5).
 /// `many` changes at a time take less each than those of a frame: it is at least as much.
 void Adaptive::learn_update(double measured_s, double levels, double chunks, double slots, bool many) {
-  const model::UnitCosts& costs = context_.costs;
-  const double predicted_s =
-      levels * costs.intersect_s + chunks * costs.refresh_chunk_s + slots * costs.refresh_slot_s;
+  const double predicted_s = units_of_update_s(levels, chunks, slots);
   if (levels < kFewLevels || predicted_s <= 0.0 || measured_s <= 0.0) return;
   const double ln = std::log(std::clamp(measured_s / predicted_s, 0.25, 16.0));
   if (context_.options.correction && (!many || ln > update_ln_)) update_ln_ += 0.2 * (ln - update_ln_);
+}
+
+double Adaptive::units_of_update_s(double levels, double chunks, double slots) const {
+  const model::UnitCosts& costs = context_.costs;
+  return levels * costs.intersect_s + chunks * costs.refresh_chunk_s + slots * costs.refresh_slot_s;
 }
 
 /// What there is to do in this frame, in all ways. The present way has planned it.
