@@ -257,8 +257,11 @@ void Choice::changed(const Decision& decision) {
     trial_purse_s_ = 0;
     after_trial_ = true;
   } else {
-    // Going back after a trial is what a trial is for.
-    if (since_change_ < kSoon && !after_trial_) penalty_ = std::min(2.0 * penalty_ + 1.0, kMostPenalty);
+    // Going back after a trial is what a trial is for, and a cut shows something else. (An animation of 20
+    // frames that begins anew with nothing was drawn `inline` at its beginning, and in the sixth round for
+    // four frames more than in the first.)
+    if (since_change_ < kSoon && !after_trial_ && !cut_)
+      penalty_ = std::min(2.0 * penalty_ + 1.0, kMostPenalty);
     after_trial_ = false;
   }
   begin();

@@ -52,8 +52,8 @@ constexpr double kNear = 1.2;
 constexpr std::uint32_t kSettling = 2;
 /// So many frames after a cut say nothing of how long the processor waits in what is shown now.
 constexpr std::uint32_t kAfterCut = 8;
-/// So many times the usual changes are a burst: a seek, or a phase that ends. What it costs the octree at once
-/// is weighed against so many frames without it, until it has followed in slices.
+/// So many times the usual changes are a burst: a seek, or a phase that ends. What it costs the octree at
+/// once is weighed against so many frames without it, until it has followed in slices.
 constexpr double kBurst = 4;
 constexpr double kBurstFrames = 20;
 /// So long it may take until queries have found out what is hidden.
@@ -207,16 +207,16 @@ void Adaptive::update(const timeline::ChangeSet& changes) {
 }
 
 /// More changes at once than the octree can follow in a frame are put off and another way draws, where that
-/// costs less. (Town of 370 000 objects on the H200: 8 ms for a jump of two seconds, beside frames of 2.7 that
-/// are 0.1 longer by `hi-z`.)
+/// costs less. (Town of 370 000 objects on the H200: 8 ms for a jump of two seconds, beside frames of 2.7
+/// that are 0.1 longer by `hi-z`.)
 void Adaptive::leave_in_burst(const model::TouchedChunks& touched) {
   const Way other =
       offers_[device].possible && offers_[device].frame_s < offers_[flat].frame_s ? device : flat;
   const double now_s = offers_[tree].frame_s, other_s = offers_[other].frame_s;
   if (context_.options.change_every != 0 || now_s <= 0.0 || other_s <= 0.0) return;
-  const double follow_s =
-      std::exp(update_ln_) * units_of_update_s(last_changed_ * std::max(1.0, facts_.height), touched.changed,
-                                               std::min(facts_.visible_slots, touched.left * 0.7 * per_node_));
+  const double follow_s = std::exp(update_ln_) *
+                          units_of_update_s(last_changed_ * std::max(1.0, facts_.height), touched.changed,
+                                            std::min(facts_.visible_slots, touched.left * 0.7 * per_node_));
   if (follow_s <= 0.5 * now_s || follow_s <= kBurstFrames * (other_s - now_s)) return;
   way_ = other;
   since_change_ = 0;
