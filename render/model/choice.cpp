@@ -122,6 +122,9 @@ void Choice::pass(double elapsed, double frame_s) {
   trial_left_ = std::max(0.0, trial_left_ - elapsed);
   penalty_ *= std::pow(0.995, elapsed);
   if (trial_purse_s_ < 0.0) trial_purse_s_ = std::min(options_.advance_frames * frame_s, options_.advance_s);
+  // At a cut the frames before this one were of something else, as they were predicted then.
+  if (usual_s_ < 0.0) usual_s_ = frame_s;
+  usual_s_ += (1.0 - std::pow(0.9, cut_ ? 1.0 : elapsed)) * (frame_s - usual_s_);
   trial_purse_s_ += options_.trial_share * elapsed * frame_s;
 }
 
@@ -176,7 +179,8 @@ std::optional<Reason> Choice::objection(const Offer& now, const Offer& other, st
 }
 
 bool Choice::far_better(const Offer& other, const Offer& now) const {
-  return cut_ && other.ready && now.frame_s - other.frame_s >= options_.at_once * now.frame_s;
+  return cut_ && other.ready && now.frame_s - other.frame_s >= options_.at_once * now.frame_s &&
+         now.frame_s - other.frame_s >= options_.at_once_of_usual * usual_s_;
 }
 
 std::optional<std::size_t> Choice::lost_to(std::span<const Offer> offers, std::size_t present,

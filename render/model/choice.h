@@ -82,9 +82,13 @@ struct Verdict {
 [[nodiscard]] std::string in_words(const Verdict& verdict);
 
 struct ChoiceOptions {
-  double margin = 0.03;          ///< another way must take less by this share
-  double frames = 3;             ///< for so many frames in a row
-  double at_once = 0.4;          ///< or at once after a cut, trial or not, when it takes less by this share
+  double margin = 0.03;  ///< another way must take less by this share
+  double frames = 3;     ///< for so many frames in a row
+  double at_once = 0.4;  ///< or at once after a cut, trial or not, when it takes less by this share
+  /// and by this share of what frames took before. An animation of frames of 0.2 s that begins anew with one
+  /// of next to nothing would save 0.01 s, and lose more where going back to `hi-z` draws two frames
+  /// unculled.
+  double at_once_of_usual = 0.25;
   double penalty_frames = 0.25;  ///< or so many frames' time missed, for each change soon after another
   double horizon_frames = 60;    ///< and pay back its change within so many, or have missed as much already
   double trial_share = 0.01;     ///< of the time goes into trials at most; 0: none
@@ -162,6 +166,7 @@ class Choice {
   double trial_purse_s_ = -1;  // below 0: the advance was not paid yet
   bool after_trial_ = false;
   bool cut_ = false;
+  double usual_s_ = -1;  // mean of the present ways' frames; below 0: of none yet
 };
 
 }  // namespace scenegen::render::model
