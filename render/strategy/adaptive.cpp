@@ -56,8 +56,13 @@ constexpr std::uint32_t kAfterCut = 8;
 /// once is weighed against so many frames without it, until it has followed in slices.
 constexpr double kBurst = 4;
 constexpr double kBurstFrames = 20;
-/// So long it may take until queries have found out what is hidden.
+/// So many frames it may take until queries have found out what is hidden, of which a guess holds meanwhile;
+/// but no longer than this, or three frames of 0.1 s and more: a guess that is wrong is lost time.
 constexpr std::uint32_t kGathering = 40;
+constexpr double kGatheringS = 0.25;
+/// Parts that queries ask about for the first time in a frame, and frames until they know: in them they draw
+/// all that the octree does.
+constexpr double kGatheredAtOnce = 64;
 
 class Adaptive final : public Strategy {
  public:
@@ -156,6 +161,7 @@ class Adaptive final : public Strategy {
   bool cut_ = false;  // it shows something else than the one before
   std::uint32_t since_cut_ = 0;
   std::uint32_t since_change_ = 1000;
+  double since_change_s_ = 0;           // about
   double choose_s_ = 0;                 // mean
   double cpu_s_ = 2e-3, gpu_s_ = 2e-3;  // means of what frames took
   std::uint32_t passes_ = 0;
@@ -220,6 +226,7 @@ void Adaptive::leave_in_burst(const model::TouchedChunks& touched) {
   if (follow_s <= 0.5 * now_s || follow_s <= kBurstFrames * (other_s - now_s)) return;
   way_ = other;
   since_change_ = 0;
+  since_change_s_ = 0;
   choice_.left();
 }
 
@@ -242,6 +249,7 @@ bool Adaptive::due() const {
 void Adaptive::plan(const View& view) {
   ++frame_;
   ++since_change_;
+  since_change_s_ += frame_s({cpu_s_, gpu_s_});
   learn_of_last_frame();
   planned_update_s_ = update_tree_s_;
   planned_changed_ = last_changed_;
@@ -336,8 +344,10 @@ void Adaptive::gather(const View& view) {
   }
   exact_ = facts_;
   // As long as answers are being gathered they say nothing yet: what was known or guessed before still holds.
-  if (way_ == tree && since_change_ < kGathering && facts_.hidden.draws <= 0.0) facts_.exact_queries = false;
+  const bool gathering = way_ == tree && since_change_ < kGathering && facts_.hidden.draws <= 0.0;
+  if (gathering) facts_.exact_queries = false;
   experience_.learn(facts_);
+  facts_.exact_queries = facts_.exact_queries || (gathering && since_change_s_ > kGatheringS);
   const model::TouchedChunks touched{recorded_chunks_.value(), changed_chunks_.value(), left_chunks_.value()};
   experience_.fill_unknown(facts_, per_node_, touched);
   if (way_ == tree) {
@@ -386,14 +396,17 @@ void Adaptive::make_offers() {
   // The tree's strategy asks as many queries as pay, none if none does.
   Method method = Method::octree;
   double tree_s = offered_s(method);
+  double change_s = way_ == tree ? 0.0 : change_to_tree_s();
   const double asking_s = offered_s(Method::queries);
   if (way_ == tree ? facts_.asked > 0.0 : asking_s < tree_s) {
+    const double frames = context_.frames_in_flight + facts_.chunks / kGatheredAtOnce;
+    if (way_ != tree) change_s += std::min<double>(kGathering, frames) * (tree_s - asking_s);
     method = Method::queries;
     tree_s = asking_s;
   }
   offers_[device] = {Method::hi_z, offered_s(Method::hi_z), 0.0, device_->available(), true};
   const bool ready = built_ && nearly_done();
-  offers_[tree] = {method, tree_s, way_ == tree ? 0.0 : change_to_tree_s(), tree_->available(), ready};
+  offers_[tree] = {method, tree_s, change_s, tree_->available(), ready};
 }
 
 void Adaptive::decide(const View& view) {
@@ -433,6 +446,7 @@ void Adaptive::prepare() {
 void Adaptive::take(Way way, const View& view) {
   way_ = way;
   since_change_ = 0;
+  since_change_s_ = 0;
   preparing_ = false;
   if (way == tree) {
     while (!tree_->catch_up(std::size_t{1} << 30)) {
