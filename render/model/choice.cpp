@@ -128,15 +128,18 @@ void Choice::pass(double elapsed, double frame_s) {
   trial_purse_s_ += options_.trial_share * elapsed * frame_s;
 }
 
+/// What trying costs: changing, and 20 frames that turn out to take a tenth more than the present way's.
+double Choice::trial_cost_s(const Offer& now, const Offer& other) const {
+  return other.change_s + options_.trial_frames * std::max(0.1 * now.frame_s, other.frame_s - now.frame_s);
+}
+
 bool Choice::worth_a_trial(const Offer& now, const Offer& other, const Correction& correction) const {
   const bool known = correction.knows(other.method);
   if (known && since_trial_ < options_.trial_again_frames) return false;
   const double reach = known ? 0.5 * (1.0 + options_.trial_reach) : options_.trial_reach;
   if (other.frame_s > reach * now.frame_s) return false;
   if (options_.trial_share <= 0.0) return false;
-  const double cost =
-      other.change_s + options_.trial_frames * std::max(0.1 * now.frame_s, other.frame_s - now.frame_s);
-  return cost <= trial_purse_s_;
+  return trial_cost_s(now, other) <= trial_purse_s_;
 }
 
 std::size_t Choice::to_try(std::span<const Offer> offers, std::size_t present, std::size_t best,
@@ -238,7 +241,10 @@ Choice::Decision Choice::decide(std::span<const Offer> offers, std::size_t prese
     if (correction != nullptr && (preparing || (against && *against != Reason::patience))) {
       const std::size_t tried = to_try(offers, present, best, preparing, *correction);
       d.trial = tried < offers.size();
-      if (d.trial) d.take = tried;
+      if (d.trial) {
+        d.take = tried;
+        d.trial_cost_s = trial_cost_s(now, offers[tried]);
+      }
     }
   }
   if (d.take == present) return d;
@@ -258,7 +264,8 @@ Choice::Decision Choice::decide(std::span<const Offer> offers, std::size_t prese
 void Choice::changed(const Decision& decision) {
   if (decision.trial) {
     since_trial_ = 0;
-    trial_purse_s_ = 0;
+    // What is left may pay for trying another one that was never measured.
+    trial_purse_s_ = std::max(0.0, trial_purse_s_ - decision.trial_cost_s);
     after_trial_ = true;
   } else {
     // Going back after a trial is what a trial is for, and a cut shows something else. (An animation of 20

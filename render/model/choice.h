@@ -121,6 +121,7 @@ class Choice {
     std::size_t take =
         0;  ///< index of the offer to take: the present one, or another one now (or to prepare)
     bool trial = false;
+    double trial_cost_s = 0;  ///< what one was saved up for
   };
   /// `elapsed`: frames since the last decision. `correction`: what was measured, null when nothing is
   /// learned. `cut`: this frame shows something else than the one before.
@@ -136,6 +137,7 @@ class Choice {
   [[nodiscard]] std::uint32_t since_change() const { return static_cast<std::uint32_t>(since_change_); }
 
  private:
+  [[nodiscard]] double trial_cost_s(const Offer& now, const Offer& other) const;
   [[nodiscard]] bool worth_a_trial(const Offer& now, const Offer& other, const Correction& correction) const;
   /// The offer to try: of those that were never measured the one predicted to take least, else the best of
   /// all others; offers.size(): none is worth it. While the best is being prepared, only others that are

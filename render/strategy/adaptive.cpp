@@ -46,6 +46,8 @@ constexpr std::size_t kNearlyDone = 4096;
 constexpr double kFewLevels = 500;
 /// Of frames in which something changes, one in so many counts the chunks that are touched.
 constexpr std::uint32_t kTouchedFrames = 3;
+/// Fewer changes in a frame than these are no reason to decide anew.
+constexpr double kManyChanges = 256;
 /// So near to being cheaper, the octree is built and kept up to date though it is not taken.
 constexpr double kNear = 1.2;
 /// Frames after a change that say nothing about steady state: commands are recorded for the first time.
@@ -157,8 +159,9 @@ class Adaptive final : public Strategy {
 
   std::uint64_t frame_ = 0;
   std::uint64_t decided_frame_ = 0;
-  Picture picture_;   // of the last frame planned
-  bool cut_ = false;  // it shows something else than the one before
+  double decided_changed_ = 0;  // changes a frame it was about
+  Picture picture_;             // of the last frame planned
+  bool cut_ = false;            // it shows something else than the one before
   std::uint32_t since_cut_ = 0;
   std::uint32_t since_change_ = 1000;
   double since_change_s_ = 0;           // about
@@ -237,9 +240,12 @@ double Adaptive::idle_s() const {
   return std::max(0.0, gpu_s_ - cpu_s_);
 }
 
-/// As often as the choice keeps to its share of a frame; at once after a seek or a cut.
+/// As often as the choice keeps to its share of a frame; at once after a seek or a cut, and when far more or
+/// less changes than at the last decision.
 bool Adaptive::due() const {
   if (frame_ <= 2 || cut_) return true;
+  const auto [less, more] = std::minmax(changed_.value(), decided_changed_);
+  if (more > kManyChanges && more > 2.0 * less) return true;
   const double share_s =
       (choice_.in_trial() ? kChooseShareInTrial : kChooseShare) * std::max(1e-6, frame_s({cpu_s_, gpu_s_}));
   return static_cast<double>(frame_ - decided_frame_) >=
@@ -412,6 +418,7 @@ void Adaptive::make_offers() {
 void Adaptive::decide(const View& view) {
   const auto elapsed = static_cast<std::uint32_t>(frame_ - decided_frame_);
   decided_frame_ = frame_;
+  decided_changed_ = changed_.value();
   const auto start = Clock::now();
   const model::Choice::Decision decision =
       choice_.decide(offers_, way_, elapsed, context_.options.correction ? &correction_ : nullptr, cut_);
