@@ -126,7 +126,7 @@ void Fit::triangles(const Run& run) {
         vertices_s = std::max(0.0, vertex_s) * less.vertices;
       }
       set("triangleS", c_.triangle_s, (geometry_s(run, shared) - vertices_s) / less.triangles);
-      c_.textured_triangle_s = c_.speck_triangle_s = c_.triangle_s;  // unless measured
+      c_.speck_triangle_s = c_.triangle_s;  // unless measured
       for (const std::size_t speck : run.of(Trial::speck_meshes)) {
         const model::Load& many = run.load(speck);
         const double speck_s =
@@ -248,9 +248,7 @@ double Fit::pile_s(const Run& run, std::size_t i) const {
 }
 
 /// Large quads hide what textures cost where writing the picture takes longer (H200, 4 samples: 0.57 ns a
-/// fragment, with and without); along outlines, where whole quads of pixels are shaded for a part, they show,
-/// and in triangles that cover something, for which more attributes are made ready (H200: boxes of 51 ns
-/// instead of 38 of such that cover nothing, however many fragments they have).
+/// fragment, with and without); along outlines, where whole quads of pixels are shaded for a part, they show.
 void Fit::textured_piles(const Run& run) {
   const auto steps = run.of(Trial::textured_piles);
   const double shade_s = c_.fragment_s[kTextured].at(1.0);
@@ -260,27 +258,19 @@ void Fit::textured_piles(const Run& run) {
   c.bulk = {};
   double best = std::numeric_limits<double>::max();
   constexpr int kSteps = 48;
-  // One pile cannot tell them apart.
-  const int triangle_steps = steps.size() > 1 && c_.triangle_s > 0.0 ? kSteps : 0;
-  for (int t = 0; t <= triangle_steps; ++t) {
-    c.textured_triangle_s = c_.triangle_s * std::pow(8.0, static_cast<double>(t) / kSteps);
-    for (int e = 0; e <= kSteps; ++e) {
-      c.textured_edge_s = shade_s * 24.0 * std::pow(static_cast<double>(e) / kSteps, 2.0);
-      double error = 0.0;
-      for (const std::size_t i : steps) {
-        const model::GpuStages s = model::device_stages(run.load(i), pixels_, c);
-        const double vertices_s =
-            std::max(s.state_s, s.vertices_s) + run.load(i).vertices * c.shadow_vertex_s;
-        error += squared_log(model::beside_s(vertices_s, s.fragments_s, c.stage_overlap), pile_s(run, i));
-      }
-      if (error >= best) continue;
-      best = error;
-      c_.textured_edge_s = c.textured_edge_s;
-      c_.textured_triangle_s = c.textured_triangle_s;
+  for (int e = 0; e <= kSteps; ++e) {
+    c.textured_edge_s = shade_s * 24.0 * std::pow(static_cast<double>(e) / kSteps, 2.0);
+    double error = 0.0;
+    for (const std::size_t i : steps) {
+      const model::GpuStages s = model::device_stages(run.load(i), pixels_, c);
+      const double vertices_s = std::max(s.state_s, s.vertices_s) + run.load(i).vertices * c.shadow_vertex_s;
+      error += squared_log(model::beside_s(vertices_s, s.fragments_s, c.stage_overlap), pile_s(run, i));
     }
+    if (error >= best) continue;
+    best = error;
+    c_.textured_edge_s = c.textured_edge_s;
   }
   measured_.emplace_back("texturedEdgeS");
-  if (triangle_steps > 0) measured_.emplace_back("texturedTriangleS");
 }
 
 void Fit::overlaps(const Run& run) {
@@ -297,13 +287,11 @@ void Fit::inline_run(const Run& run) {
   empty_frame(run);
   fragments(run);
   const double rough_s = c_.triangle_s;
-  c_.triangle_s = c_.textured_triangle_s = c_.speck_triangle_s =
-      0.0;  // in draws of boxes, until they are known
+  c_.triangle_s = c_.speck_triangle_s = 0.0;  // in draws of boxes, until they are known
   draws(run);
   piles(run);
   triangles(run);
-  if (c_.triangle_s <= 0.0)
-    c_.triangle_s = c_.textured_triangle_s = c_.speck_triangle_s = rough_s;  // no spheres fit the picture
+  if (c_.triangle_s <= 0.0) c_.triangle_s = c_.speck_triangle_s = rough_s;  // no spheres fit the picture
   meshes(run);
   piles(run);  // with triangles that cover something beside those of the smallest boxes
   textured_piles(run);

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <optional>
-#include <utility>
-#include <vector>
 
 #include "render/image_file.h"
 #include "scene/random.h"
@@ -120,17 +118,6 @@ Image checker() {
   }
   const std::string png = encode_picture(PictureFormat::png, {kSide, kSide}, rgba);
   return {"checker", "image/png", {png.begin(), png.end()}};
-}
-
-/// Of a place in the unit cube, in steps of 1/1024.
-std::uint32_t morton(float x, float y, float z) {
-  const auto step = [](float v) { return std::min(static_cast<std::uint32_t>(v * 1024.0F), 1023U); };
-  const std::array at{step(x), step(y), step(z)};
-  std::uint32_t code = 0;
-  for (std::uint32_t bit = 0; bit < 10; ++bit) {
-    for (std::uint32_t axis = 0; axis < 3; ++axis) code |= (at[axis] >> bit & 1U) << (3 * bit + axis);
-  }
-  return code;
 }
 
 class Builder {
@@ -355,10 +342,7 @@ class Builder {
     show(group(in_front, all_), more);
   }
 
-  /// Boxes of one size, anywhere, in groups of neighbours, as scenes have them, and the groups in any order:
-  /// what is in front comes before or after what is behind. In an order without places the H200's 64 000
-  /// boxes of 28 fragments took 1.9 ms, in groups 3.4: draws in a row then fall on the same part of the
-  /// picture. (And 4.0 with the groups in order too, from far to near, which no scene is from everywhere.)
+  /// Boxes of one size, anywhere, as scenes have them: what is in front comes before or after what is behind.
   void add_piles() {
     const Random random(1, "piles");
     std::uint64_t number = 0;
@@ -367,19 +351,11 @@ class Builder {
     const auto pile = [&](Trial trial, MeshId mesh, std::uint32_t n, double layers) {
       const float side = std::sqrt(static_cast<float>(layers) * h * h * aspect / static_cast<float>(n));
       other({trial, n, 36, layers, 0.64}, [&] {
-        std::vector<std::pair<std::uint64_t, glm::vec3>>
-            places;  // groups in any order, by Morton code in each
         for (std::uint32_t k = 0; k < n; ++k) {
-          const float x = random.unit(number++), y = random.unit(number++), z = random.unit(number++);
-          const std::uint64_t code = morton(x, y, z);
-          const std::uint64_t group = code >> 21U;  // one of 512
-          places.emplace_back((group * 0x9E3779B97F4A7C15ULL >> 32U) << 32U | code,
-                              glm::vec3(x, y, z) - 0.5F);
+          const auto around = [&] { return random.unit(number++) - 0.5F; };
+          const float x = around(), y = around(), z = around();
+          object(mesh, {x * h * aspect, y * h, -kDistanceM + 0.4F * kDistanceM * z}, glm::vec3(side));
         }
-        std::stable_sort(places.begin(), places.end(),
-                         [](const auto& a, const auto& b) { return a.first < b.first; });
-        for (const auto& [code, p] : places)
-          object(mesh, {p.x * h * aspect, p.y * h, -kDistanceM + 0.4F * kDistanceM * p.z}, glm::vec3(side));
       });
     };
     for (std::size_t i = sizes_.boxes.size() - 2; i < sizes_.boxes.size(); ++i) {

@@ -50,7 +50,6 @@ constexpr std::array kNames{
     UnitName{"instanceSavesS", "t_state", "device: what an instance saves against a draw of its own",
              &U::instance_saves_s},
     UnitName{"triangleS", "t_vert", "device: a triangle of a quarter of a fragment or more", &U::triangle_s},
-    UnitName{"texturedTriangleS", "t_vert", "device: the same with textures", &U::textured_triangle_s},
     UnitName{"speckTriangleS", "t_vert", "device: one that covers nothing", &U::speck_triangle_s},
     UnitName{.name = "fragmentS",
              .symbol = "t_frag",

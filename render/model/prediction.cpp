@@ -209,8 +209,7 @@ double triangles_s(const Load& load, const UnitCosts& c) {
   // each covers a quarter of a fragment.
   const double each = 2.0 * load.fragments / load.triangles;
   const double covering = std::min(1.0, std::expm1(-4.0 * each) / std::expm1(-1.0));
-  const double triangle_s = c.triangle_s + load.textured_share * (c.textured_triangle_s - c.triangle_s);
-  return load.triangles * (c.speck_triangle_s + covering * (triangle_s - c.speck_triangle_s));
+  return load.triangles * (c.speck_triangle_s + covering * (c.triangle_s - c.speck_triangle_s));
 }
 
 double bulk_factor(double triangles, const UnitCosts& c) {

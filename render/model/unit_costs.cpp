@@ -48,7 +48,7 @@ UnitCosts rough_costs(bool software_device) {
   c.draw_s.fill(software_device ? Curve{{3, 36, 3600}, {1.4e-6, 2.4e-6, 110e-6}}
                                 : Curve{{3, 36, 3600}, {14e-9, 30e-9, 2e-6}});
   c.triangle_s = software_device ? 40e-9 : 1e-9;
-  c.textured_triangle_s = c.speck_triangle_s = c.triangle_s;
+  c.speck_triangle_s = c.triangle_s;
   c.bulk = {{20e3}, {1}};
   c.fragment_s.fill(software_device ? Curve{{0.01, 1}, {15e-9, 10e-9}} : Curve{{0.01, 1}, {50e-12, 20e-12}});
   c.hidden_fragment_s = software_device ? 1e-9 : 5e-12;

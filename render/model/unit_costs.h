@@ -57,8 +57,7 @@ struct UnitCosts {
                ///< next batch while one is rasterized, so many take less each
   double instance_saves_s = 0;  ///< against a draw of its own, one of several instances of a command
   double triangle_s = 0;  ///< and each triangle of it, beside its vertices as far as triangle_overlap says
-  double textured_triangle_s = 0;  ///< with textures: more attributes are made ready for its fragments
-  double speck_triangle_s = 0;     ///< one so small that it covers nothing: dropped before it is rasterized
+  double speck_triangle_s = 0;  ///< one so small that it covers nothing: dropped before it is rasterized
   std::array<Curve, kShadings> fragment_s;  ///< t_frag: one fragment, by the share of the screen covered (at)
   double edge_s = 0;                        ///< what outlines of triangles add to t_frag, by outlines()
   double textured_edge_s = 0;               ///< and those of textured ones

@@ -252,20 +252,6 @@ TEST_CASE("predictions: triangles are done beside vertices, or after them") {
   CHECK(device_stages(load, 1000, c).vertices_s == Approx(1730));
 }
 
-TEST_CASE("predictions: textured triangles that cover something cost what they do, by their share of draws") {
-  UnitCosts c = units();
-  c.triangle_s = 5;
-  c.textured_triangle_s = 13;
-  c.speck_triangle_s = 1;
-  const auto each = [&](double textured_share, double fragments) {
-    return triangles_s({10, 360, fragments, textured_share, 0, 200}, c) / 200;
-  };
-  CHECK(each(0, 1000) == Approx(5));
-  CHECK(each(1, 1000) == Approx(13));
-  CHECK(each(0.25, 1000) == Approx(7));
-  CHECK(each(1, 0) == Approx(1));  // that cover nothing cost no more with textures
-}
-
 TEST_CASE("predictions: triangles between all samples cost less, and large frames less each") {
   UnitCosts c = units();
   c.triangle_s = 5;
