@@ -15,6 +15,7 @@
 #include "render/strategy/estimate_load.h"
 #include "render/strategy/octree_choice.h"
 #include "render/strategy/picture.h"
+#include "render/strategy/query_chooser.h"
 #include "render/strategy/touched_chunks.h"
 
 namespace scenegen::render {
@@ -62,9 +63,6 @@ constexpr double kBurstFrames = 20;
 /// but no longer than this, or three frames of 0.1 s and more: a guess that is wrong is lost time.
 constexpr std::uint32_t kGathering = 40;
 constexpr double kGatheringS = 0.25;
-/// Parts that queries ask about for the first time in a frame, and frames until they know: in them they draw
-/// all that the octree does.
-constexpr double kGatheredAtOnce = 64;
 
 class Adaptive final : public Strategy {
  public:
@@ -405,7 +403,9 @@ void Adaptive::make_offers() {
   double change_s = way_ == tree ? 0.0 : change_to_tree_s();
   const double asking_s = offered_s(Method::queries);
   if (way_ == tree ? facts_.asked > 0.0 : asking_s < tree_s) {
-    const double frames = context_.frames_in_flight + facts_.chunks / kGatheredAtOnce;
+    // Until its parts are asked about it draws all that the octree does.
+    const double frames =
+        context_.frames_in_flight + facts_.chunks / static_cast<double>(QueryChooser::kGatheredAtOnce);
     if (way_ != tree) change_s += std::min<double>(kGathering, frames) * (tree_s - asking_s);
     method = Method::queries;
     tree_s = asking_s;

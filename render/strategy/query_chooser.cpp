@@ -8,8 +8,6 @@ namespace {
 
 // A part is heavy when drawing it costs so many times what asking does: C of (3.5).
 constexpr double kHeavy = 1.5;
-// Parts never asked before that may be asked in a frame.
-constexpr std::size_t kGatheredAtOnce = 64;
 // So many answers say enough for a fit.
 constexpr double kGatherEnough = 2048;
 // Or so many times what is left to ask.

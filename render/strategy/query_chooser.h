@@ -32,6 +32,9 @@ namespace scenegen::render {
 /// until the view has changed much or some time has passed. Else *asking*, fitted anew in each frame.
 class QueryChooser {
  public:
+  /// Parts never asked before that may be asked in a frame.
+  static constexpr std::size_t kGatheredAtOnce = 64;
+
   struct Settings {
     bool exact = true;              ///< what is believed hidden is sent all the same, under a predicate
     bool indirect = true;           ///< chunks are indirect draws
