@@ -215,7 +215,7 @@ Choice::Decision Choice::decide(std::span<const Offer> offers, std::size_t prese
   const Offer& now = offers[present];
   cut_ = cut;
   // Changes in a row were about another picture: one that is twice as dear must not wait for seven frames
-  // more. A quarter is left for cameras that jump in every frame.
+  // more. A quarter is left.
   if (cut) penalty_ *= 0.25;
   pass(elapsed, now.frame_s);
   Decision d;
@@ -230,6 +230,10 @@ Choice::Decision Choice::decide(std::span<const Offer> offers, std::size_t prese
   } else if (const std::optional<std::size_t> winner = lost_to(offers, present, elapsed)) {
     d.verdict.reason = Reason::cheaper;
     d.take = *winner;
+  } else if (const std::size_t ready = best_of(offers, present, true);
+             ready < offers.size() && ready != best && far_better(offers[ready], now)) {
+    // What is best has to be prepared first: until then, not as what was right before the cut.
+    d.take = ready;
   } else if (trial_left_ > 0.0 && !far_better(offers[best], now)) {
     d.verdict.reason = Reason::trial;
     return d;

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "render/model/choice.h"
 #include "render/model/experience.h"
@@ -60,7 +61,7 @@ constexpr std::uint32_t kAfterCut = 8;
 constexpr double kBurst = 4;
 constexpr double kBurstFrames = 20;
 /// So many frames it may take until queries have found out what is hidden, of which a guess holds meanwhile;
-/// but no longer than this, or three frames of 0.1 s and more: a guess that is wrong is lost time.
+/// but no longer than this, once answers are in: a guess that is wrong is lost time.
 constexpr std::uint32_t kGathering = 40;
 constexpr double kGatheringS = 0.25;
 
@@ -124,6 +125,11 @@ class Adaptive final : public Strategy {
   [[nodiscard]] bool near() const {
     return built_ && tree_->available() && offers_[tree].frame_s < kNear * offers_[way_].frame_s;
   }
+  /// May queries still find out what is hidden? The first answers come after the frames in flight.
+  [[nodiscard]] bool gathering() const {
+    return since_change_ < kGathering &&
+           (since_change_ <= context_.frames_in_flight || since_change_s_ <= kGatheringS);
+  }
   void prepare();
   void expect();
   void forward();
@@ -163,6 +169,7 @@ class Adaptive final : public Strategy {
   std::uint32_t since_cut_ = 0;
   std::uint32_t since_change_ = 1000;
   double since_change_s_ = 0;           // about
+  bool left_in_burst_ = false;          // since the last plan
   double choose_s_ = 0;                 // mean
   double cpu_s_ = 2e-3, gpu_s_ = 2e-3;  // means of what frames took
   std::uint32_t passes_ = 0;
@@ -226,15 +233,15 @@ void Adaptive::leave_in_burst(const model::TouchedChunks& touched) {
                                             std::min(facts_.visible_slots, touched.left * 0.7 * per_node_));
   if (follow_s <= 0.5 * now_s || follow_s <= kBurstFrames * (other_s - now_s)) return;
   way_ = other;
-  since_change_ = 0;
-  since_change_s_ = 0;
+  left_in_burst_ = true;
+  decided_frame_ = frame_;
+  report_.verdict = {offers_[other].method, offers_[tree].method, other_s, now_s, model::Reason::trial};
   choice_.left();
 }
 
 /// So long the processor would only wait for the device. A device that is the processor leaves nothing idle.
 double Adaptive::idle_s() const {
   if (context_.frames_in_flight <= 1 || context_.device.info.type == "CPU") return 0.0;
-  if (since_cut_ < kAfterCut) return 0.0;
   return std::max(0.0, gpu_s_ - cpu_s_);
 }
 
@@ -253,6 +260,7 @@ bool Adaptive::due() const {
 void Adaptive::plan(const View& view) {
   ++frame_;
   ++since_change_;
+  if (std::exchange(left_in_burst_, false)) since_change_ = 0, since_change_s_ = 0;
   since_change_s_ += frame_s({cpu_s_, gpu_s_});
   learn_of_last_frame();
   planned_update_s_ = update_tree_s_;
@@ -348,10 +356,8 @@ void Adaptive::gather(const View& view) {
   }
   exact_ = facts_;
   // As long as answers are being gathered they say nothing yet: what was known or guessed before still holds.
-  const bool gathering = way_ == tree && since_change_ < kGathering && facts_.hidden.draws <= 0.0;
-  if (gathering) facts_.exact_queries = false;
+  if (way_ == tree && gathering() && facts_.hidden.draws <= 0.0) facts_.exact_queries = false;
   experience_.learn(facts_);
-  facts_.exact_queries = facts_.exact_queries || (gathering && since_change_s_ > kGatheringS);
   const model::TouchedChunks touched{recorded_chunks_.value(), changed_chunks_.value(), left_chunks_.value()};
   experience_.fill_unknown(facts_, per_node_, touched);
   if (way_ == tree) {
@@ -435,7 +441,8 @@ void Adaptive::decide(const View& view) {
 
 /// A slice of what was put off, while something else draws.
 void Adaptive::prepare() {
-  const double budget_s = std::max(kPrepareShare * frame_s({cpu_s_, gpu_s_}), kIdleShare * idle_s());
+  const double idle_share_s = since_cut_ < kAfterCut ? 0.0 : kIdleShare * idle_s();
+  const double budget_s = std::max(kPrepareShare * frame_s({cpu_s_, gpu_s_}), idle_share_s);
   const auto start = Clock::now();
   const std::size_t pending = tree_->pending();
   const Octree::Refreshed before = tree_->refreshed();

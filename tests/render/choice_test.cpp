@@ -129,6 +129,18 @@ TEST_CASE("a short animation that begins anew is followed in every round as in t
   CHECK(*std::max_element(of_round.begin() + 1, of_round.end()) == 0);
 }
 
+TEST_CASE(
+    "at a cut to what the present way is bad at, the best that is ready draws while the best is prepared") {
+  const std::array offers{Offer{Method::inline_frustum, 17e-3, 0, true, true},
+                          Offer{Method::octree, 7e-3, 5e-3, true, false},
+                          Offer{Method::hi_z, 8e-3, 0, true, true}};
+  Choice choice({.trial_share = 0});
+  choice.left();  // inline was just taken
+  const Choice::Decision d = choice.decide(offers, 0, 1, nullptr, true);
+  CHECK(d.take == 2);
+  CHECK(d.verdict.used == Method::hi_z);
+}
+
 TEST_CASE("a way that was left in a burst of changes is not gone back to at once") {
   std::array<Offer, 2> offers{Offer{Method::octree, 1e-3, 0, true, true},
                               Offer{Method::hi_z, 1.1e-3, 0, true, true}};
