@@ -395,6 +395,10 @@ Result<void> Renderer::finish(FrameResult& out) {
   return state_->guarded([&] { state_->finish(out); });
 }
 
+void Renderer::set_predictions(bool wanted) {
+  state_->options.predictions = wanted;
+}
+
 Result<void> Renderer::resize(glm::uvec2 size) {
   assert(in_flight() == 0);
   if (Result<void> fits = state_->check_size(size); !fits) return fits;

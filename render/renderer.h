@@ -41,7 +41,8 @@ struct RendererOptions {
   std::string strategy = "inline";
   StrategyOptions how;
   std::optional<model::UnitCosts> costs;  ///< from a calibration of this device; none: rough ones
-  bool predictions = false;  ///< FrameReport::predicted is wanted; costs some 50 us a frame, in no stage
+  /// FrameReport::predicted is wanted; costs some 50 us a frame, milliseconds in large scenes, in no stage.
+  bool predictions = false;
   bool shadows = true;
   /// Frames that may be submitted and not finished, 1 to 3. With 1 the processor and the device work one
   /// after the other.
@@ -118,6 +119,10 @@ class Renderer {
   Result<void> submit(const timeline::ChangeSet& changes, const timeline::Player& player, const View& view);
   /// Waits for the oldest unfinished frame and copies its pictures; reuses the vectors of `out`.
   Result<void> finish(FrameResult& out);
+
+  /// RendererOptions::predictions from the next frame on. Predicting reads boxes of the whole scene between
+  /// recording and submitting: frames whose times count are better without.
+  void set_predictions(bool wanted);
 
   /// Pictures of another size from now on. No frame may be unfinished. Errors as for create().
   Result<void> resize(glm::uvec2 size);

@@ -65,9 +65,10 @@ Stages medians(const std::vector<Stages>& all) {
 class Measuring {
  public:
   Measuring(const TestScene& test, const MeasureOptions& how, Clock::time_point start,
-            timeline::Player player, Renderer renderer)
+            timeline::Player player, Renderer renderer, bool facts)
       : test_(test),
         how_(how),
+        facts_(facts),
         start_(start),
         player_(std::move(player)),
         renderer_(std::move(renderer)),
@@ -158,8 +159,14 @@ class Measuring {
     }
     Result<void> done = frame(time_s, &samples_[i].first, &results_[i].first_report);
     for (std::size_t k = 0; done && k < how_.settle; ++k) done = frame(time_s, nullptr, nullptr);
-    for (std::size_t k = 0; done && k < how_.frames; ++k)
-      done = frame(time_s, &samples_[i].steady, &results_[i].report);
+    for (std::size_t k = 0; done && k < how_.frames; ++k) {
+      // The last one of the first visit says what the model is told. To predict, the processor reads all
+      // boxes after it recorded a frame, so the others are drawn as people draw them: without.
+      const bool told = facts_ && samples_[i].steady.size() + 1 == how_.frames;
+      renderer_.set_predictions(told);
+      done = frame(time_s, &samples_[i].steady, told || !facts_ ? &results_[i].report : nullptr);
+    }
+    renderer_.set_predictions(false);
     const Trial trial = test_.steps[i].trial;
     if (done && renderer_.most_in_flight() > 1 && (trial == Trial::empty || trial == Trial::boxes))
       done = pipelined(time_s, samples_[i].periods);
@@ -168,6 +175,7 @@ class Measuring {
 
   const TestScene& test_;
   const MeasureOptions& how_;
+  bool facts_;
   Clock::time_point start_;
   timeline::Player player_;
   Renderer renderer_;
@@ -188,7 +196,9 @@ Result<std::vector<Measured>> measure(const TestScene& test, const RendererOptio
   player.seek(0.0);
   Result<Renderer> renderer = Renderer::create(test.scene, player, options);
   if (!renderer) return forward_error(renderer);
-  return Measuring(test, how, start, std::move(player), std::move(*renderer)).run(wanted);
+  renderer->set_predictions(false);
+  return Measuring(test, how, start, std::move(player), std::move(*renderer), options.predictions)
+      .run(wanted);
 }
 
 Line fit_line(const std::vector<double>& x, const std::vector<double>& y) {

@@ -29,7 +29,7 @@ struct Measured {
   Stages first;               ///< of frames that come from the empty step, or Step::from
   double leave_record_s = 0;  ///< of the empty frame after them: what is read late is read there
   double period_s = 0;        ///< from frame to frame, two in flight; 0: not measured
-  FrameReport report;         ///< counts of a steady frame
+  FrameReport report;  ///< counts of a steady frame; with RendererOptions::predictions of one that has them
   FrameReport first_report;
   CommandMemoryReport commands;  ///< of all steps together, at the end
   std::size_t samples = 0;

@@ -24,7 +24,7 @@ enum class Trial : std::uint8_t {
   textured_meshes,  ///< `unshared_meshes` with textures
   layers,           ///< `layers` quads over `share` of the picture, every one in front of those before
   textured_layers,  ///< the same with textures
-  piles,            ///< `draws` boxes anywhere over `share` of the picture, `layers` deep, in any order
+  piles,            ///< `draws` boxes over `share` of the picture, `layers` deep, in any order or in groups
   textured_piles,   ///< the same with textures
   hidden_boxes,     ///< a wall over the whole picture with `draws` boxes behind it
   halved_boxes,     ///< `draws` boxes, half of them beside the picture
@@ -66,7 +66,8 @@ struct TestSizes {
   std::uint32_t mesh_vertices = 0;      ///< of all meshes of a step together
   std::vector<double> shares;           ///< of the picture, as D: 1, 3/4, 1/2, 1/4, 1/8, 1/16
   std::uint32_t layers = 4;
-  std::vector<double> piles, textured_piles;  ///< how deep, ascending
+  std::vector<double> piles, textured_piles;  ///< in any order: how deep, ascending
+  std::vector<double> grouped_piles;          ///< both, in groups of neighbours
 };
 
 /// What 2.5.4 and 4.2 ask for, for pictures of `size`. `quick`: fewer sizes.

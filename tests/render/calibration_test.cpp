@@ -96,7 +96,7 @@ TEST_CASE("calibration: a damaged file is named with what is wrong in it") {
   CHECK(holds(error_after([&](json& d) { units(d)["drawS"] = 3; }), "/units/drawS: must be an object"));
   CHECK(holds(error_after([](json& d) { d["units"] = nullptr; }), "/units: must be an object"));
   CHECK(holds(error_after([](json& d) { d["version"] = 3; }),
-              "/version: this program reads version 6, not 3; run"));
+              "/version: this program reads version 7, not 3; run"));
   CHECK(holds(error_after([](json& d) { d["schema"] = "sceneplay/frames"; }), "no calibration"));
   CHECK(holds(error_after([](json& d) { d["size"] = {0, 10}; }), "/size"));
   CHECK(holds(error_after([](json& d) { d["size"] = {-5, 10}; }), "/size"));

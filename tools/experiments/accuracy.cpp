@@ -14,6 +14,7 @@ using render::model::Method;
 
 constexpr std::size_t kWarm = 6;   // frames until what is kept is recorded and what is hidden is known
 constexpr std::size_t kLeast = 3;  // measured, however long they take
+constexpr std::size_t kPredicted = 3;
 
 /// A renderer before a scene that stands still at the end of its time.
 class StillScene {
@@ -23,14 +24,21 @@ class StillScene {
       : renderer_(renderer), player_(player), view_(view), end_s_(static_cast<double>(scene.duration_s)) {}
 
   Result<void> submit() { return renderer_.submit(player_.seek(end_s_), player_, view_); }
-  /// Milliseconds of submitting one and finishing one, less what predicting took: the device waits meanwhile.
+  /// Milliseconds of submitting one and finishing one.
   Result<double> frame() {
     const Stopwatch watch;
     if (auto done = submit(); !done) return forward_error(done);
     if (auto done = renderer_.finish(result_); !done) return forward_error(done);
-    return watch.seconds() * 1e3 - result_.report.predict_ms;
+    return watch.seconds() * 1e3;
   }
   Result<void> finish() { return renderer_.finish(result_); }
+  /// A frame with predictions, whose time does not count (Renderer::set_predictions).
+  Result<void> predict() {
+    renderer_.set_predictions(true);
+    Result<double> ms = frame();
+    renderer_.set_predictions(false);
+    return ms ? Result<void>() : forward_error(ms);
+  }
   [[nodiscard]] const render::FrameReport& report() const { return result_.report; }
 
  private:
@@ -47,7 +55,6 @@ void tell(const AccuracyRequest& request, const render::FrameReport& report, boo
 
 Result<void> measure_one(StillScene& still, Method method, const render::model::UnitCosts& costs,
                          const AccuracyRequest& request, AccuracyRun& out) {
-  std::vector<double> predicted_ms;
   const Stopwatch all;
   const auto more = [&] { return out.one_ms.size() < request.frames && all.seconds() < request.seconds; };
   for (std::size_t i = 0; i < kWarm + kLeast || more(); ++i) {
@@ -55,9 +62,13 @@ Result<void> measure_one(StillScene& still, Method method, const render::model::
     if (!ms) return forward_error(ms);
     if (i < kWarm) continue;
     out.one_ms.push_back(*ms);
+    tell(request, still.report(), false);
+  }
+  std::vector<double> predicted_ms;
+  for (std::size_t i = 0; i < kPredicted; ++i) {
+    if (auto done = still.predict(); !done) return done;
     predicted_ms.push_back(
         render::model::predict(method, still.report().facts, costs, {.frames_in_flight = 1}).frame_s * 1e3);
-    tell(request, still.report(), false);
   }
   out.predicted_one_ms = spread_of(std::move(predicted_ms)).median;
   return {};
@@ -81,7 +92,6 @@ Result<void> measure_two(StillScene& still, const AccuracyRequest& request, Accu
 render::RendererOptions accuracy_options(render::RendererOptions options, Method method) {
   options.strategy = std::string(name_of(method));
   options.how.node_form = render::NodeForm::secondaries;
-  options.predictions = true;
   options.outputs.readback = true;  // calibration's T_0 has copying the picture out in it
   return options;
 }
@@ -102,6 +112,7 @@ Result<AccuracyRun> measure_accuracy(const Scene& scene, Method method,
   if (request.two_in_flight) {
     if (auto done = measure_two(still, request, out); !done) return forward_error(done);
   }
+  if (auto done = still.predict(); !done) return forward_error(done);
   out.last = still.report();
   return out;
 }

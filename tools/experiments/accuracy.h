@@ -26,13 +26,12 @@ struct AccuracyRequest {
 };
 
 struct AccuracyRun {
-  std::vector<double> one_ms,
-      two_ms;                   ///< a frame, with one and with two in flight, less what predicting takes
-  double predicted_one_ms = 0;  ///< with one in flight; median over the frames
-  render::FrameReport last;
+  std::vector<double> one_ms, two_ms;  ///< a frame, with one and with two in flight
+  double predicted_one_ms = 0;         ///< with one in flight; median over frames of its own
+  render::FrameReport last;            ///< of one with predictions
 };
 
-/// What they are drawn with: kept command buffers, as the dissertation does, and predictions.
+/// What they are drawn with: kept command buffers, as the dissertation does.
 [[nodiscard]] render::RendererOptions accuracy_options(render::RendererOptions options,
                                                        render::model::Method method);
 
