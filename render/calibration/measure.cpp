@@ -161,7 +161,7 @@ class Measuring {
     for (std::size_t k = 0; done && k < how_.settle; ++k) done = frame(time_s, nullptr, nullptr);
     for (std::size_t k = 0; done && k < how_.frames; ++k) {
       // The last one of the first visit says what the model is told. To predict, the processor reads all
-      // boxes after it recorded a frame, so the others are drawn as people draw them: without.
+      // boxes after it recorded a frame, so all the others are drawn without, as they are by people.
       const bool told = facts_ && samples_[i].steady.size() + 1 == how_.frames;
       renderer_.set_predictions(told);
       done = frame(time_s, &samples_[i].steady, told || !facts_ ? &results_[i].report : nullptr);

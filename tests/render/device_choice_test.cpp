@@ -124,7 +124,7 @@ TEST_CASE("a GPU and a processor that plays one draw the same scenes by differen
     CHECK(differ.contains("set5, 85 %"));
     CHECK(differ_without_hi_z == std::set<std::string>{"set6, 75 %", "town_random, 75 %"});
     CHECK(taken == std::set<Method>{Method::octree, Method::hi_z});
-    // To draw as the other does is dear.
+    // To draw as the other does costs the processor some percent, the GPU next to nothing.
     CHECK(table.at("set5, 85 %").at(kCpu).loss(Method::hi_z) > 0.03);
     CHECK(table.at("set6, 20 %").at(kCpu).loss(Method::hi_z) > 0.02);
     CHECK(table.at("set5, 85 %").at(kGpu).loss(Method::octree) > 0.003);

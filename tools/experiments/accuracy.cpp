@@ -104,6 +104,7 @@ Result<AccuracyRun> measure_accuracy(const Scene& scene, Method method,
   player.seek(static_cast<double>(scene.duration_s));
   auto renderer = render::Renderer::create(scene, player, options);
   if (!renderer) return forward_error(renderer);
+  renderer->set_predictions(false);  // but for frames of their own
   const bool software = options.shared_device && render::info_of(*options.shared_device).type == "CPU";
   const render::model::UnitCosts costs = options.costs.value_or(render::model::rough_costs(software));
   StillScene still(scene, *renderer, player, camera->view(player));
