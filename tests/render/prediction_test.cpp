@@ -213,6 +213,12 @@ TEST_CASE("predictions: ways that keep commands") {
   CHECK(indirect.secondaries_s == Approx(12 * 17));
   CHECK(indirect.draw_device_s == Approx(135 * (kDraw - 40 + 41) + 12 * 37));
 
+  // An indirect draw is as much dearer than a recorded one with textures as without.
+  FrameFacts textured = facts();
+  textured.in_chunks.textured_share = 1;
+  CHECK(predict(Method::octree, textured, units(), {1, true, true}).draw_device_s ==
+        Approx(180 * (116 - 40 + 41) + 12 * 37));
+
   FrameFacts nothing = facts();
   nothing.asked = nothing.chunks_hidden = 0;
   nothing.hidden = {};
