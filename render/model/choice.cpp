@@ -34,10 +34,15 @@ std::size_t best_of(std::span<const Offer> offers, std::size_t present, bool rea
 
 }  // namespace
 
-void Correction::learn(Side& side, Method method, bool fresh, bool machines, double ratio) const {
-  // A single frame that took ten times as long (somebody else's turn) says no more than one that took twice.
-  const double surprise = bounded(std::log(ratio) - factor(side, method));
+void Correction::learn(Side& side, Method method, bool fresh, bool machines, double predicted_s,
+                       double taken_s) const {
+  if (predicted_s <= 0.0 || taken_s <= 0.0) return;
+  const double believed = factor(side, method, predicted_s);
   double& own = side.own[index(method)];
+  if (trust(side, method, predicted_s) < 1.0) own = bounded(believed - side.machine);
+  side.predicted_s[index(method)] = predicted_s;
+  // A single frame that took ten times as long (somebody else's turn) says no more than one that took twice.
+  const double surprise = bounded(std::log(taken_s / predicted_s) - believed);
   // Where the machine is not shared: fast enough to be 5 % behind when a ratio drifts by 60 % in 100 frames
   // (a growing town on an H200).
   if (fresh || !machines) own = bounded(own + (fresh ? 0.2 : 0.06) * surprise);
@@ -55,10 +60,9 @@ void Correction::measured(Method method, std::uint32_t since_change, const Sides
   bool others = false;
   for (std::size_t m = 0; m < kMethods; ++m) others = others || (m != index(method) && frames_[m] > 0);
   const bool fresh = others && since_change < kFresh;
-  if (predicted.cpu_s > 0.0 && taken.cpu_s > 0.0)
-    learn(cpu_, method, fresh, true, taken.cpu_s / predicted.cpu_s);
-  if (predicted.gpu_s > 0.0 && taken.gpu_s > 0.0)
-    learn(gpu_, method, fresh, !others || device_shared_, taken.gpu_s / predicted.gpu_s);
+  learn(cpu_, method, fresh, true, predicted.cpu_s, taken.cpu_s);
+  learn(gpu_, method, fresh, !others || device_shared_, predicted.gpu_s, taken.gpu_s);
+  last_ = method;
   ++frames_[index(method)];
 }
 
@@ -75,12 +79,26 @@ bool Correction::knows(Method method) const {
   return frames_[index(known_relative(method))] > 0;
 }
 
-double Correction::factor(const Side& side, Method method) const {
-  return bounded(side.machine + side.own[index(known_relative(method))]);
+/// What two sides have in common differs: processors do other things in each way, a device the same work for
+/// more or fewer objects. So only of a device is it told from the present way.
+double Correction::trust(const Side& side, Method method, double predicted_s) const {
+  if (&side != &gpu_ || device_shared_ || known_relative(method) == known_relative(last_)) return 1.0;
+  const double then_s = side.predicted_s[index(known_relative(method))];
+  if (then_s <= 0.0 || predicted_s <= 0.0) return 0.0;
+  constexpr double kAlike = 0.15, kFade = 0.3;  // ln
+  return std::exp(-std::max(0.0, std::abs(std::log(predicted_s / then_s)) - kAlike) / kFade);
+}
+
+double Correction::factor(const Side& side, Method method, double predicted_s) const {
+  const double known = side.own[index(known_relative(method))];
+  const double doubt = std::min(0.0, side.own[index(known_relative(last_))]);
+  const double sure = trust(side, method, predicted_s);
+  return bounded(side.machine + sure * known + (1.0 - sure) * doubt);
 }
 
 Sides Correction::corrected(Method method, const Sides& predicted) const {
-  return {predicted.cpu_s * std::exp(factor(cpu_, method)), predicted.gpu_s * std::exp(factor(gpu_, method))};
+  return {predicted.cpu_s * std::exp(factor(cpu_, method, predicted.cpu_s)),
+          predicted.gpu_s * std::exp(factor(gpu_, method, predicted.gpu_s))};
 }
 
 std::string in_words(const Verdict& v) {

@@ -23,7 +23,8 @@ struct Sides {
 /// keeps its relation to the others, and one that never was has the factor of its nearest relative. The
 /// product stays in [1/2, 2]. A device that is no processor is hardly shared, and has a clock of its own:
 /// what drifts there is mostly that a scene grows beyond what the unit costs were measured on, and more than
-/// half of it is the way's own.
+/// half of it is the way's own. There a way that was measured when it had far less or more to do has the
+/// benefit of the doubt: what is shared with the way that is taken, or all of that one's if that is less.
 class Correction {
  public:
   explicit Correction(bool device_shared = true) : device_shared_(device_shared) {}
@@ -36,17 +37,21 @@ class Correction {
 
  private:
   struct Side {
-    double machine = 0;                  // ln
-    std::array<double, kMethods> own{};  // ln
+    double machine = 0;                          // ln
+    std::array<double, kMethods> own{};          // ln
+    std::array<double, kMethods> predicted_s{};  // when last measured; 0: never
   };
   /// `machines`: what drifts is the machine's alone.
-  void learn(Side& side, Method method, bool fresh, bool machines, double ratio) const;
-  [[nodiscard]] double factor(const Side& side, Method method) const;
+  void learn(Side& side, Method method, bool fresh, bool machines, double predicted_s, double taken_s) const;
+  [[nodiscard]] double factor(const Side& side, Method method, double predicted_s) const;
+  /// Of what was measured, in 0..1.
+  [[nodiscard]] double trust(const Side& side, Method method, double predicted_s) const;
   /// Itself, if it was measured.
   [[nodiscard]] Method known_relative(Method method) const;
 
   bool device_shared_;
   Side cpu_, gpu_;
+  Method last_ = Method::inline_frustum;          // measured
   std::array<std::uint32_t, kMethods> frames_{};  // measured
 };
 

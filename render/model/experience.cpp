@@ -68,10 +68,12 @@ void Experience::learn(const FrameFacts& f) {
   if (f.exact_seen && f.in_frustum.draws > 0.0) {
     // Slowly, and within bounds: the counts are some frames old, and say nothing after a seek or a cut.
     const auto towards = [&](double& mean, double part) {
+      mean = still_seen(mean, f);
       mean += (culled_ ? kNewest : 1.0) * (std::clamp(part / seen_share(f), 1.0 / kMostOff, kMostOff) - mean);
     };
     towards(draws_seen_, share(f.seen.draws, f.in_frustum.draws));
     towards(vertices_seen_, share(f.seen.vertices, f.in_frustum.vertices));
+    seen_of_draws_ = f.in_frustum.draws;
     culled_ = true;
   }
   if (f.exact_queries && f.chunks > 0.0) {
@@ -92,12 +94,21 @@ double Experience::seen_share(const FrameFacts& f) {
   return std::clamp(1.5 / std::max(1.0, layers), 0.02, 1.0);
 }
 
+/// What was learned when there was far less or more to see says little: the first few objects of a town are
+/// all seen, which would keep `hi-z` from being taken until there are 15 000.
+double Experience::still_seen(double mean, const FrameFacts& f) const {
+  if (seen_of_draws_ <= 0.0) return mean;
+  constexpr double kAlike = 0.3, kFade = 0.7;  // ln
+  const double apart = std::abs(std::log(std::max(1.0, f.in_frustum.draws) / seen_of_draws_));
+  return std::exp(std::log(mean) * std::exp(-std::max(0.0, apart - kAlike) / kFade));
+}
+
 void Experience::fill_seen(FrameFacts& f) const {
   const double covered = shaded_fragments(f.in_frustum, f.screen_pixels).covered_share * f.screen_pixels;
   if (!f.exact_seen) {
     // By how far that was wrong when it was last known: what was seen looking away says little of a street.
-    double draws = std::min(1.0, draws_seen_ * seen_share(f));
-    double vertices = std::min(1.0, vertices_seen_ * seen_share(f));
+    double draws = std::min(1.0, still_seen(draws_seen_, f) * seen_share(f));
+    double vertices = std::min(1.0, still_seen(vertices_seen_, f) * seen_share(f));
     // Never known: no more than queries left, which ask about larger things.
     if (!culled_ && queried_) draws = vertices = std::min(draws, 1.0 - draws_hidden_);
     f.seen = scaled(f.in_frustum, vertices);

@@ -50,6 +50,7 @@ class Experience {
   void fill_queries(FrameFacts& facts) const;
   void fill_seen(FrameFacts& facts) const;
   [[nodiscard]] static double seen_share(const FrameFacts& facts);
+  [[nodiscard]] double still_seen(double mean, const FrameFacts& facts) const;
 
   // Until something was seen: half-full to full chunks; some of a chunk in the frustum lies outside it.
   double fill_ = 0.7;                                  // draws in a chunk / objects a node
@@ -62,6 +63,7 @@ class Experience {
   double vertices_hidden_ = 0, fragments_hidden_ = 0;
   bool culled_ = false;
   double draws_seen_ = 1, vertices_seen_ = 1;  // by culling on the device / seen_share()
+  double seen_of_draws_ = 0;                   // in the frustum then
 };
 
 }  // namespace scenegen::render::model

@@ -372,6 +372,39 @@ TEST_CASE("of a device that is not shared, what drifts is mostly the way's own")
         Approx(common.corrected(Method::octree, predicted).gpu_s));
 }
 
+TEST_CASE("what a way was measured at with far less to do gives way to what is learned of the others") {
+  const auto took = [](double share, double predicted_s) { return Sides{1e-4, share * predicted_s}; };
+  const auto factor = [](const Correction& c, Method m, double predicted_s) {
+    return c.corrected(m, {1e-4, predicted_s}).gpu_s / predicted_s;
+  };
+  const auto grown = [&](bool shared, double inline_share) {
+    Correction c(shared);
+    // Few objects: `hi-z` takes a tenth more than predicted. Then three times as much is drawn `inline`.
+    for (int i = 0; i < 50; ++i) c.measured(Method::inline_frustum, 100, {1e-4, 1e-3}, took(1, 1e-3));
+    for (int i = 0; i < 50; ++i)
+      c.measured(Method::hi_z, static_cast<std::uint32_t>(i), {1e-4, 1e-3}, took(1.1, 1e-3));
+    for (int i = 0; i < 100; ++i)
+      c.measured(Method::inline_frustum, 100, {1e-4, 3e-3}, took(inline_share, 3e-3));
+    return c;
+  };
+  const Correction shorter = grown(false, 0.8);
+  CHECK(factor(shorter, Method::inline_frustum, 3e-3) == Approx(0.8).epsilon(0.02));
+  CHECK(factor(shorter, Method::hi_z, 3e-3) == Approx(0.8).epsilon(0.03));  // as all others
+  CHECK(factor(shorter, Method::hi_z, 1e-3) > 0.9);                         // where it was measured
+  // What takes longer may be the present way's own: only what is shared counts.
+  const Correction longer = grown(false, 1.3);
+  CHECK(factor(longer, Method::inline_frustum, 3e-3) == Approx(1.3).epsilon(0.02));
+  CHECK(factor(longer, Method::hi_z, 3e-3) < 1.2);
+  // Measured there, it is believed again.
+  Correction again = shorter;
+  for (std::uint32_t i = 2; i < 40; ++i) again.measured(Method::hi_z, i, {1e-4, 3e-3}, took(1, 3e-3));
+  CHECK(factor(again, Method::hi_z, 3e-3) == Approx(1).epsilon(0.03));
+  CHECK(factor(again, Method::inline_frustum, 3e-3) < 0.9);
+  // Where the processor is the device, what drifts is the machine's in any case.
+  const Correction common = grown(true, 0.8);
+  CHECK(factor(common, Method::hi_z, 3e-3) == Approx(factor(common, Method::hi_z, 1e-3)));
+}
+
 TEST_CASE("what was missed, not how many frames it took, ends waiting after changes in a row") {
   // Twelve changes, one soon after another; then 30 % could be saved.
   Choice choice({.trial_share = 0});
@@ -527,6 +560,31 @@ TEST_CASE("what was seen of another picture does not make everything seen for ev
   after = facts;
   once.fill_unknown(after, 100, {});
   CHECK(after.seen.draws == Approx(guessed.seen.draws).epsilon(0.1));
+}
+
+TEST_CASE("that the first objects are all seen says little of a town") {
+  FrameFacts few;
+  few.visible_slots = 100;
+  few.screen_pixels = 1e6;
+  few.in_frustum = {100, 3600, 0.4e6, 0, 0.2, 1200};  // two layers
+  few.exact_inline = few.exact_seen = true;
+  few.seen = few.in_frustum;
+  FrameFacts town = few;
+  town.visible_slots = 20'000;
+  town.in_frustum = {20'000, 720'000, 8e6, 0, 0.8, 240'000};  // ten
+  town.seen = {};
+  town.exact_seen = false;
+  FrameFacts guessed = town;
+  Experience{}.fill_unknown(guessed, 100, {});
+  Experience experience;
+  experience.learn(few);
+  FrameFacts twice = few;
+  twice.in_frustum = {120, 4320, 0.4e6, 0, 0.2, 1440};
+  twice.exact_seen = false;
+  experience.fill_unknown(twice, 100, {});
+  CHECK(twice.seen.draws == Approx(120));
+  experience.fill_unknown(town, 100, {});
+  CHECK(town.seen.draws < 1.1 * guessed.seen.draws);
 }
 
 TEST_CASE("(3.14) what an octree that is not built would have is guessed; once seen, ratios are remembered") {
