@@ -13,7 +13,7 @@
 
 namespace scenegen::render {
 
-/// What is asked about: `number` and `revision` are the asker's business.
+/// What is asked about: `number`, `revision` and `guess` are the asker's business.
 struct Asked {
   std::uint32_t number = 0;
   std::uint64_t revision = 0;
@@ -21,6 +21,7 @@ struct Asked {
   Box box_m;  ///< already grown
   /// Shares the query of the one before: its answer is about all of their boxes.
   bool with_previous = false;
+  std::uint8_t guess = 0;
 };
 
 /// How many queries they take.

@@ -21,9 +21,17 @@ constexpr std::uint32_t kForget = 64;
 // of the queries about them; some always.
 constexpr std::size_t kAgainShare = 8, kAgainOfQueries = 2, kAgainLeast = 1;
 constexpr std::size_t kJoinedShare = 2, kJoinedLeast = 8;
+// Of all answers so many may say visible: D allows 30 %, and gathering, at the start, takes some of that.
+constexpr double kWasted = 0.27;
+// Guesses that say visible more often than so are rather wrong, or not worth it though there is room.
+constexpr double kRatherWrong = 0.5, kHopeless = 0.95;
+// Answers are forgotten by so much a frame, and guessed to be half and half, with so much weight, before.
+constexpr double kGuessMemory = 0.98, kGuessWeight = 4;
+// So many known parts around say something.
+constexpr float kAroundLeast = 3;
 // Answers in a row after which a part that is hidden may share a query, how many more of them make it more
 // certain to stay so, and how many parts share one.
-constexpr std::uint32_t kSteady = 8, kSteadiest = 63;
+constexpr std::uint32_t kSteady = 5, kSteadiest = 63;
 constexpr std::uint32_t kMostTogether = 32;
 // How often parts that stayed hidden come into view, times their answers in a row: forgotten by so much a
 // frame, and guessed, with so much weight, before it is known.
@@ -110,8 +118,13 @@ void QueryChooser::learn(std::span<const Asked> asked, std::span<const std::uint
     sum.queries += 1;
     sum.seconds += hidden ? seconds : 0;
     if (asked[first].believed_hidden) {
+      hidden_answers_ += 1;
+      hidden_visible_ += hidden ? 0 : 1;
       believed += seconds;
       kept += hidden ? seconds : 0.0;
+    } else {
+      guesses_[asked[first].guess].answers += 1;
+      guesses_[asked[first].guess].visible += hidden ? 0 : 1;
     }
     doubted_ += steady;
     revealed_ += steady > 0 && !hidden ? 1 : 0;
@@ -122,6 +135,9 @@ void QueryChooser::learn(std::span<const Asked> asked, std::span<const std::uint
   }
   doubted_ *= kRiskMemory;
   revealed_ *= kRiskMemory;
+  hidden_answers_ *= kGuessMemory;
+  hidden_visible_ *= kGuessMemory;
+  for (Guess& guess : guesses_) guess = {kGuessMemory * guess.answers, kGuessMemory * guess.visible};
   if (believed > 0) kept_share_ += 0.1 * (kept / believed - kept_share_);
   if (phase_ == Phase::gathering && !asked.empty()) {
     gathered_.queries += sum.queries;
@@ -188,6 +204,8 @@ void QueryChooser::summarize(const Frame& frame) {
       const bool open = verdict == Verdict::unknown || (verdict == Verdict::visible && part.due <= frame_);
       sum.hidden = sum.hidden && (verdict == Verdict::hidden || (open && !heavy(frame, i, i + 1)));
       sum.known = sum.known || verdict != Verdict::unknown;
+      sum.known_parts += verdict != Verdict::unknown ? 1.0F : 0.0F;
+      sum.hidden_parts += verdict == Verdict::hidden ? 1.0F : 0.0F;
       sum.visible = sum.visible || verdict == Verdict::visible;
     }
     for (std::size_t child = v + 1; child < visit.end_visit; child = frame.visits[child].end_visit) {
@@ -196,6 +214,8 @@ void QueryChooser::summarize(const Frame& frame) {
       sum.box_m.add(part.box_m);
       sum.hidden = sum.hidden && part.hidden;
       sum.known = sum.known || part.known;
+      sum.known_parts += part.known_parts;
+      sum.hidden_parts += part.hidden_parts;
       sum.visible = sum.visible || part.visible;
     }
     if (visit.end_chunk - visit.first_chunk < 2) continue;  // a node that is one chunk is asked as that
@@ -205,6 +225,7 @@ void QueryChooser::summarize(const Frame& frame) {
     if (own == Verdict::hidden) {
       sum.hidden = true;
       sum.visible = false;
+      sum.known_parts = sum.hidden_parts = static_cast<float>(visit.end_chunk - visit.first_chunk);
     }
   }
 }
@@ -223,11 +244,39 @@ bool QueryChooser::make_candidate(const Frame& frame, std::uint32_t key, std::ui
                                   std::uint32_t end, const Box& box_m, Candidate& out) const {
   const Box grown = frame.boxes.grown(box_m);
   if (frame.boxes.touches_eye(grown)) return false;
-  out = {key, first, end, 0, 0, seconds_[end] - seconds_[first], grown};
+  out = {};
+  out.part = key;
+  out.first = first;
+  out.end = end;
+  out.seconds = seconds_[end] - seconds_[first];
+  out.box_m = grown;
   return true;
 }
 
-void QueryChooser::collect_chunk(const Frame& frame, std::uint32_t index, std::uint32_t level) {
+QueryChooser::Around QueryChooser::around_of(const Below& below, Around wider) {
+  if (below.known_parts < kAroundLeast) return wider;
+  const float hidden = below.hidden_parts / below.known_parts;
+  if (hidden < 0.2F) return Around::fifth;
+  if (hidden < 0.5F) return Around::half;
+  return hidden < 0.75F ? Around::most : Around::nearly_all;
+}
+
+std::vector<QueryChooser::Candidate>& QueryChooser::list_of(Why why) {
+  return why == Why::joined ? joined_ : why == Why::never_asked ? unknown_ : again_;
+}
+
+void QueryChooser::propose(Candidate candidate, Why why, Around around) {
+  candidate.guess =
+      static_cast<std::uint8_t>(static_cast<std::size_t>(why) * kArounds + static_cast<std::size_t>(around));
+  const Guess& guess = guesses_[candidate.guess];
+  candidate.wrong = (guess.visible + 0.5 * kGuessWeight) / (guess.answers + kGuessWeight);
+  std::vector<Candidate>& list = list_of(why);
+  candidate.rank = static_cast<std::uint32_t>(list.size());
+  list.push_back(candidate);
+}
+
+void QueryChooser::collect_chunk(const Frame& frame, std::uint32_t index, std::uint32_t level,
+                                 Around around) {
   const std::uint32_t number = frame.chunks[index];
   const Part& part = chunks_[number];
   if (part.verdict == Verdict::visible && part.due > frame_) return;
@@ -236,17 +285,19 @@ void QueryChooser::collect_chunk(const Frame& frame, std::uint32_t index, std::u
   if (!make_candidate(frame, number, index, index + 1, frame.tree.chunk(number).content.box_m, candidate))
     return;
   candidate.level = level;
-  std::vector<Candidate>& list = part.verdict == Verdict::hidden    ? hidden_
-                                 : part.verdict == Verdict::unknown ? unknown_
-                                                                    : again_;
-  candidate.rank = static_cast<std::uint32_t>(list.size());
-  list.push_back(candidate);
+  if (part.verdict == Verdict::hidden) {
+    candidate.rank = static_cast<std::uint32_t>(hidden_.size());
+    hidden_.push_back(candidate);
+  } else {
+    propose(candidate, part.verdict == Verdict::unknown ? Why::never_asked : Why::again, around);
+  }
 }
 
-void QueryChooser::collect(const Frame& frame, std::uint32_t v) {
+void QueryChooser::collect(const Frame& frame, std::uint32_t v, Around around) {
   const OctreeVisit& visit = frame.visits[v];
   if (visit.first_chunk == visit.end_chunk || !heavy(frame, visit.first_chunk, visit.end_chunk)) return;
   const Below& below = below_[v];
+  around = around_of(below, around);
   const std::uint32_t level = frame.tree.node(visit.node).level;
   if (visit.end_chunk - visit.first_chunk > 1) {
     const std::uint32_t key = visit.node | kNodeBit;
@@ -256,17 +307,18 @@ void QueryChooser::collect(const Frame& frame, std::uint32_t v) {
                       (below.hidden && (part.verdict == Verdict::unknown || part.due <= frame_));
     if (asks && make_candidate(frame, key, visit.first_chunk, visit.end_chunk, below.box_m, candidate)) {
       candidate.level = level;
-      std::vector<Candidate>& list = part.verdict == Verdict::hidden ? hidden_
-                                     : below.known                   ? joined_
-                                                                     : unknown_;
-      candidate.rank = static_cast<std::uint32_t>(list.size());
-      list.push_back(candidate);
+      if (part.verdict == Verdict::hidden) {
+        candidate.rank = static_cast<std::uint32_t>(hidden_.size());
+        hidden_.push_back(candidate);
+      } else {
+        propose(candidate, below.known ? Why::joined : Why::never_asked, around);
+      }
       if (part.verdict == Verdict::hidden || !below.known) return;
     }
   }
-  for (std::uint32_t i = visit.first_chunk; i < visit.own_end; ++i) collect_chunk(frame, i, level);
+  for (std::uint32_t i = visit.first_chunk; i < visit.own_end; ++i) collect_chunk(frame, i, level, around);
   for (std::uint32_t child = v + 1; child < visit.end_visit; child = frame.visits[child].end_visit)
-    collect(frame, child);
+    collect(frame, child, around);
 }
 
 void QueryChooser::ask(const Candidate& candidate, bool hidden, bool with_previous, QueryPlan& plan) {
@@ -275,7 +327,7 @@ void QueryChooser::ask(const Candidate& candidate, bool hidden, bool with_previo
   part.draws = static_cast<float>(draws_[candidate.end] - draws_[candidate.first]);
   part.chunks = static_cast<float>(candidate.end - candidate.first);
   const std::uint32_t query =
-      plan.ask({candidate.part, part.revision, hidden, candidate.box_m, with_previous});
+      plan.ask({candidate.part, part.revision, hidden, candidate.box_m, with_previous, candidate.guess});
   last_asked_ = frame_;
   if (!hidden) return;
   for (std::uint32_t i = candidate.first; i < candidate.end; ++i) query_of_[i] = query;
@@ -294,6 +346,27 @@ void QueryChooser::ask_some(std::vector<Candidate>& candidates, std::size_t most
   }
   std::sort(candidates.begin(), candidates.end(), before);
   for (const Candidate& candidate : candidates) ask(candidate, false, false, plan);
+}
+
+/// Asks what is wrong least often first, while there is `room` for answers that say visible: each right guess
+/// makes some, each wrong one takes it. One is made in any case, or nothing would be learned; and of those
+/// that are rather wrong, no more than so many.
+void QueryChooser::guess(std::vector<Candidate>& candidates, std::size_t most, double& room,
+                         QueryPlan& plan) {
+  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    if (a.wrong != b.wrong) return a.wrong < b.wrong;
+    if (a.level != b.level) return a.level < b.level;
+    return a.seconds != b.seconds ? a.seconds > b.seconds : a.rank < b.rank;
+  });
+  std::size_t count = 0;
+  for (const Candidate& candidate : candidates) {
+    const double taken = candidate.wrong - kWasted;
+    const bool enough = candidate.wrong > kHopeless || (candidate.wrong > kRatherWrong && count >= most);
+    if (count > 0 && (taken > room || enough)) break;
+    ask(candidate, false, false, plan);
+    room -= taken;
+    ++count;
+  }
 }
 
 void QueryChooser::begin_gathering() {
@@ -449,9 +522,11 @@ void QueryChooser::ask_best(const Frame& frame, QueryPlan& plan) {
   const std::size_t parts = plan.asked.size();
   const std::size_t again =
       std::max(kAgainLeast, std::min(parts / kAgainShare, std::size_t{plan.queries} / kAgainOfQueries));
-  ask_some(joined_, std::max(kJoinedLeast, parts / kJoinedShare), plan);
-  ask_some(again_, again, plan);
-  ask_some(unknown_, kGatheredAtOnce, plan);
+  double room = kWasted * static_cast<double>(plan.queries);
+  if (hidden_answers_ > 0.0) room *= 1.0 - hidden_visible_ / hidden_answers_ / kWasted;
+  guess(joined_, std::max(kJoinedLeast, parts / kJoinedShare), room, plan);
+  guess(again_, again, room, plan);
+  guess(unknown_, kGatheredAtOnce, room, plan);
 }
 
 void QueryChooser::choose(const Frame& frame, QueryPlan& plan) {
@@ -476,7 +551,7 @@ void QueryChooser::choose(const Frame& frame, QueryPlan& plan) {
     make_room(curve_, frame.chunks.size() + 1);
     make_room(window_, kWindow);
     make_room(points_, kWindow);
-    collect(frame, 0);
+    collect(frame, 0, Around::unknown);
     phase_ == Phase::gathering ? gather(frame, plan) : ask_best(frame, plan);
   }
   for (std::uint32_t i = 0; i < frame.chunks.size(); ++i) {

@@ -1,6 +1,7 @@
 // Which parts of an octree to ask about in a pass, from the answers so far (D 3.2): processor code only.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,7 +30,9 @@ namespace scenegen::render {
 ///
 /// Three phases. *Gathering*: heavy parts (3.5) that were never asked are, largest first, some in each frame;
 /// everything is drawn. Then hidden(x) is fitted and x* asked for; if that is 0, *resting*: nothing is asked
-/// until the view has changed much or some time has passed. Else *asking*, fitted anew in each frame.
+/// until the view has changed much or some time has passed. Else *asking*, fitted anew in each frame: what is
+/// believed hidden, and of what may be hidden as much as leaves few of all answers that say visible, by how
+/// often such guesses were wrong, those first that are wrong least often: where most around is hidden.
 class QueryChooser {
  public:
   /// Parts never asked before that may be asked in a frame.
@@ -95,7 +98,9 @@ class QueryChooser {
     std::uint32_t level = 0;
     std::uint32_t rank = 0;  // order of the walk
     double seconds = 0;
-    Box box_m;            // grown
+    Box box_m;  // grown
+    std::uint8_t guess = 0;
+    double wrong = 0;     // how often such a guess says visible
     bool shares = false;  // may share a query
     double doubt = 1;     // that it is hidden still
   };
@@ -110,6 +115,17 @@ class QueryChooser {
     bool hidden = true;    // every part is, as far as it would be asked
     bool known = false;    // some part has a verdict
     bool visible = false;  // some part was visible
+    float known_parts = 0, hidden_parts = 0;
+  };
+  /// Why something is asked about that is not believed hidden: all below it is, it never was asked, or it was
+  /// visible long ago.
+  enum class Why : std::uint8_t { joined, never_asked, again };
+  /// What is known around it: nothing, or how much of that is hidden.
+  enum class Around : std::uint8_t { unknown, fifth, half, most, nearly_all };
+  static constexpr std::size_t kWhys = 3, kArounds = 5;
+  /// Answers to one kind of guess, forgotten slowly.
+  struct Guess {
+    double answers = 0, visible = 0;
   };
   /// Sums over queries.
   struct Sum {
@@ -121,13 +137,16 @@ class QueryChooser {
   void learn_part(const Asked& asked, bool hidden, bool alone);
   void measure(const Frame& frame);
   void summarize(const Frame& frame);
-  void collect(const Frame& frame, std::uint32_t visit);
-  void collect_chunk(const Frame& frame, std::uint32_t index, std::uint32_t level);
+  void collect(const Frame& frame, std::uint32_t visit, Around around);
+  void collect_chunk(const Frame& frame, std::uint32_t index, std::uint32_t level, Around around);
   [[nodiscard]] bool make_candidate(const Frame& frame, std::uint32_t key, std::uint32_t first,
                                     std::uint32_t end, const Box& box_m, Candidate& out) const;
   [[nodiscard]] bool heavy(const Frame& frame, std::uint32_t first, std::uint32_t end) const;
   [[nodiscard]] double seconds_of(const Frame& frame, const Octree::Content& content) const;
   [[nodiscard]] double secondary_s(const Frame& frame, double draws) const;
+  [[nodiscard]] static Around around_of(const Below& below, Around wider);
+  [[nodiscard]] std::vector<Candidate>& list_of(Why why);
+  void propose(Candidate candidate, Why why, Around around);
   [[nodiscard]] model::QueryProblem problem(const Frame& frame) const;
   [[nodiscard]] static double doubt(const Part& part);
   [[nodiscard]] double risk() const;
@@ -139,6 +158,7 @@ class QueryChooser {
   void ask_best(const Frame& frame, QueryPlan& plan);
   void ask(const Candidate& candidate, bool hidden, bool with_previous, QueryPlan& plan);
   void ask_some(std::vector<Candidate>& candidates, std::size_t most, QueryPlan& plan);
+  void guess(std::vector<Candidate>& candidates, std::size_t most, double& room, QueryPlan& plan);
   void observe(const Sum& sum);
 
   static constexpr std::uint32_t kNodeBit = 0x80000000U;
@@ -165,6 +185,8 @@ class QueryChooser {
   std::vector<Sum> curve_;                  // of batches_, sorted: the first i of them
   double kept_share_ = 1;                   // of what was believed hidden, found so again
   double doubted_ = 0, revealed_ = 0;       // parts that stayed hidden, queries that found them visible
+  std::array<Guess, kWhys * kArounds> guesses_;
+  double hidden_visible_ = 0, hidden_answers_ = 0;  // queries about what is believed hidden
   double best_ = 0;
   std::uint32_t last_asked_ = 0, useless_ = 0, wake_ = 0, rest_ = 0;
   double seconds_at_rest_ = 0;

@@ -26,7 +26,7 @@ enum class Places : std::uint8_t {
 class World {
  public:
   explicit World(const QueryChooser::Settings& settings, const model::UnitCosts& costs,
-                 Places places = Places::even)
+                 Places places = Places::even, std::uint32_t slots = kSlots)
       : costs_(costs), chooser(settings) {
     const Random random(4, "query chooser");
     boxes_.resize(kSlots);
@@ -48,7 +48,12 @@ class World {
           return render::Octree::Work{36, 12};
         },
         options);
-    for (std::uint32_t i = 0; i < kSlots; ++i) tree->insert(i);
+    grow(slots);
+  }
+
+  /// To so many boxes.
+  void grow(std::uint32_t slots) {
+    for (; slots_ < slots; ++slots_) tree->insert(slots_);
     tree->refresh();
   }
 
@@ -107,6 +112,7 @@ class World {
   View view_ = make_view(look_at({0, 0, 60}, {0, 0, 0}), {false, 1.2F, 1, 1, 0.1F, 0}, 4.0F / 3.0F);
   model::UnitCosts costs_;
   SlotBoxes boxes_;
+  std::uint32_t slots_ = 0;
   std::vector<OctreeVisit> visits_;
   std::deque<std::pair<std::vector<Asked>, std::vector<std::uint32_t>>> asked_;
 
@@ -189,6 +195,30 @@ TEST_CASE("gathering finds what is hidden, and few queries then keep it from bei
             0.3 * static_cast<double>(totals.answered));
     }
   }
+}
+
+TEST_CASE("what appears is asked about where most around is hidden, so that few queries are for nothing") {
+  // Three quarters appear in front of the wall.
+  World world({true, true, true}, model::rough_costs(false), Places::even, 2000);
+  world.wall_z_m = -75;
+  run(world, 30);
+  Totals totals;
+  double nodes = 0;
+  for (std::uint32_t slots = 2000; slots <= kSlots; slots += 90) {
+    world.grow(slots);
+    const bool asking = world.chooser.phase() == QueryChooser::Phase::asking;
+    const Totals frame = run(world, 1);
+    if (!asking) continue;
+    totals.queries += frame.queries;
+    totals.answered += frame.answered;
+    totals.hidden_answers += frame.hidden_answers;
+    nodes += static_cast<double>(world.tree->node_count());
+  }
+  REQUIRE(totals.queries > 1000);
+  CHECK(static_cast<double>(totals.queries) <= 0.1 * nodes);
+  CHECK(static_cast<double>(totals.answered - totals.hidden_answers) <=
+        0.3 * static_cast<double>(totals.answered));
+  CHECK(world.plan.second.size() >= world.truly_hidden() * 6 / 10);
 }
 
 TEST_CASE("a wall that vanishes is noticed at once; one that comes back after a while") {
