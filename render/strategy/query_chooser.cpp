@@ -23,6 +23,7 @@ constexpr std::size_t kAgainShare = 8, kAgainOfQueries = 2, kAgainLeast = 1;
 constexpr std::size_t kJoinedShare = 2, kJoinedLeast = 8;
 // Of all answers so many may say visible: D allows 30 %, and gathering, at the start, takes some of that.
 constexpr double kWasted = 0.27;
+constexpr double kRoomLeast = 3;
 // Guesses that say visible more often than so are rather wrong, or not worth it though there is room.
 constexpr double kRatherWrong = 0.5, kHopeless = 0.95;
 // Answers are forgotten by so much a frame, and guessed to be half and half, with so much weight, before.
@@ -522,8 +523,15 @@ void QueryChooser::ask_best(const Frame& frame, QueryPlan& plan) {
   const std::size_t parts = plan.asked.size();
   const std::size_t again =
       std::max(kAgainLeast, std::min(parts / kAgainShare, std::size_t{plan.queries} / kAgainOfQueries));
+  if (!settings_.exact) {  // which is there for comparison: D limits nothing
+    ask_some(joined_, std::max(kJoinedLeast, parts / kJoinedShare), plan);
+    ask_some(again_, again, plan);
+    return ask_some(unknown_, kGatheredAtOnce, plan);
+  }
+  // As long as little is known to be hidden, the share of nothing would keep more from being found.
   double room = kWasted * static_cast<double>(plan.queries);
   if (hidden_answers_ > 0.0) room *= 1.0 - hidden_visible_ / hidden_answers_ / kWasted;
+  room = std::max(room, kRoomLeast);
   guess(joined_, std::max(kJoinedLeast, parts / kJoinedShare), room, plan);
   guess(again_, again, room, plan);
   guess(unknown_, kGatheredAtOnce, room, plan);
