@@ -16,7 +16,7 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr std::string_view kSchema = "sceneplay/calibration";
-constexpr int kVersion = 7;
+constexpr int kVersion = 8;
 constexpr std::size_t kMostPoints = 64;      // of a curve
 constexpr std::size_t kMostBytes = 1 << 20;  // a file has 5 kB
 constexpr double kMostUnitBytes = 1e9;

@@ -17,6 +17,7 @@ constexpr std::array kNames{
              &U::refresh_slot_s},
     UnitName{"visitNodeS", "t_trav", "processor: visiting a node", &U::visit_node_s},
     UnitName{"cullSlotS", "t_fc", "processor: culling one box of many", &U::cull_slot_s},
+    UnitName{"listDrawS", "-", "processor: listing one that is in the frustum", &U::list_draw_s},
     UnitName{"cullNodeS", "t_fc", "processor: culling a node or chunk", &U::cull_node_s},
     UnitName{"listSlotS", "-", "processor: bringing a draw of a chunk in order", &U::list_slot_s},
     UnitName{"recordS", "t_buf", "processor: recording and sending a draw", &U::record_s},

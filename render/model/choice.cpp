@@ -134,9 +134,13 @@ std::string in_words(const Verdict& v) {
   return text;
 }
 
-void Choice::pass(double elapsed, double frame_s) {
+void Choice::pass(double elapsed, std::size_t present, double frame_s) {
   since_change_ += elapsed;
   since_trial_ += elapsed;
+  since_cut_ = cut_ ? 0.0 : since_cut_ + elapsed;
+  for (double& frames : since_taken_) frames += elapsed;
+  present_ = present;
+  since_taken_[present] = 0.0;
   trial_left_ = std::max(0.0, trial_left_ - elapsed);
   penalty_ *= std::pow(0.995, elapsed);
   if (trial_purse_s_ < 0.0) trial_purse_s_ = std::min(options_.advance_frames * frame_s, options_.advance_s);
@@ -146,34 +150,53 @@ void Choice::pass(double elapsed, double frame_s) {
   trial_purse_s_ += options_.trial_share * elapsed * frame_s;
 }
 
-/// What trying costs: changing, and 20 frames that turn out to take a tenth more than the present way's.
-double Choice::trial_cost_s(const Offer& now, const Offer& other) const {
-  return other.change_s + options_.trial_frames * std::max(0.1 * now.frame_s, other.frame_s - now.frame_s);
+/// What trying costs: changing, and 20 frames that turn out to take a tenth more than the present way's, a
+/// twentieth when it was measured before.
+double Choice::trial_cost_s(const Offer& now, const Offer& other, bool known) const {
+  const double worse_s = (known ? 0.05 : 0.1) * now.frame_s;
+  return other.change_s + options_.trial_frames * std::max(worse_s, other.frame_s - now.frame_s);
 }
 
-bool Choice::worth_a_trial(const Offer& now, const Offer& other, const Correction& correction) const {
+bool Choice::worth_a_trial(const Offer& now, const Offer& other, std::size_t number,
+                           const Correction& correction) const {
   const bool known = correction.knows(other.method);
-  if (known && since_trial_ < options_.trial_again_frames) return false;
+  // What was measured before the cut was of something else, and may be off by more than lies between them.
+  const bool stale = since_cut_ >= options_.near_frames && since_taken_[number] > since_cut_ &&
+                     other.frame_s <= (1.0 + options_.near_share) * now.frame_s;
+  if (known && !stale && since_trial_ < options_.trial_again_frames) return false;
   const double reach = known ? 0.5 * (1.0 + options_.trial_reach) : options_.trial_reach;
   if (other.frame_s > reach * now.frame_s) return false;
   if (options_.trial_share <= 0.0) return false;
-  return trial_cost_s(now, other) <= trial_purse_s_;
+  return trial_cost_s(now, other, known) <= trial_purse_s_;
 }
 
-std::size_t Choice::to_try(std::span<const Offer> offers, std::size_t present, std::size_t best,
-                           bool preparing, const Correction& correction) const {
+std::size_t Choice::to_try(std::span<const Offer> offers, std::size_t present, bool preparing,
+                           const Correction& correction) const {
   // Not the best alone: a way that is guessed too dear would never be measured beside one that is guessed too
   // cheap.
   std::size_t found = offers.size();
+  bool found_known = true;
   for (std::size_t i = 0; i < offers.size(); ++i) {
-    if (i == present || !offers[i].possible || correction.knows(offers[i].method)) continue;
-    if (preparing && !offers[i].ready) continue;
-    if (!worth_a_trial(offers[present], offers[i], correction)) continue;
-    if (found == offers.size() || offers[i].frame_s < offers[found].frame_s) found = i;
+    const bool known = correction.knows(offers[i].method);
+    if (i == present || !offers[i].possible || (preparing && (known || !offers[i].ready))) continue;
+    if (known && !found_known) continue;
+    if (!worth_a_trial(offers[present], offers[i], i, correction)) continue;
+    if (found < offers.size() && known == found_known && offers[i].frame_s >= offers[found].frame_s) continue;
+    found = i;
+    found_known = known;
   }
-  if (found == offers.size() && !preparing && worth_a_trial(offers[present], offers[best], correction))
-    found = best;
   return found;
+}
+
+/// Both were measured just now, so no margin keeps what is worse.
+bool Choice::regretted(std::span<const Offer> offers, const Offer& now) {
+  if (cut_) before_trial_.reset();
+  if (!before_trial_ || trial_left_ > 0.0) return false;
+  const Offer& before = offers[*before_trial_];
+  if (before.possible && before.ready && before.frame_s < (1.0 - options_.regret_share) * now.frame_s)
+    return true;
+  before_trial_.reset();
+  return false;
 }
 
 std::optional<Reason> Choice::objection(const Offer& now, const Offer& other, std::size_t number,
@@ -235,7 +258,7 @@ Choice::Decision Choice::decide(std::span<const Offer> offers, std::size_t prese
   // Changes in a row were about another picture: one that is twice as dear must not wait for seven frames
   // more. A quarter is left.
   if (cut) penalty_ *= 0.25;
-  pass(elapsed, now.frame_s);
+  pass(elapsed, present, now.frame_s);
   Decision d;
   d.take = present;
   d.verdict = {now.method, now.method, now.frame_s, now.frame_s, Reason::alone};
@@ -255,17 +278,20 @@ Choice::Decision Choice::decide(std::span<const Offer> offers, std::size_t prese
   } else if (trial_left_ > 0.0 && !far_better(offers[best], now)) {
     d.verdict.reason = Reason::trial;
     return d;
+  } else if (regretted(offers, now)) {
+    d.verdict.reason = Reason::cheaper;
+    d.take = *before_trial_;
   } else {
     const std::optional<Reason> against = objection(now, offers[best], best, elapsed);
     d.verdict.reason = against.value_or(Reason::cheaper);
     if (!against) d.take = best;
     const bool preparing = !against && !offers[best].ready;
     if (correction != nullptr && (preparing || (against && *against != Reason::patience))) {
-      const std::size_t tried = to_try(offers, present, best, preparing, *correction);
+      const std::size_t tried = to_try(offers, present, preparing, *correction);
       d.trial = tried < offers.size();
       if (d.trial) {
         d.take = tried;
-        d.trial_cost_s = trial_cost_s(now, offers[tried]);
+        d.trial_cost_s = trial_cost_s(now, offers[tried], correction->knows(offers[tried].method));
       }
     }
   }
@@ -284,8 +310,10 @@ Choice::Decision Choice::decide(std::span<const Offer> offers, std::size_t prese
 }
 
 void Choice::changed(const Decision& decision) {
+  before_trial_.reset();
   if (decision.trial) {
     since_trial_ = 0;
+    before_trial_ = present_;
     // What is left may pay for trying another one that was never measured.
     trial_purse_s_ = std::max(0.0, trial_purse_s_ - decision.trial_cost_s);
     after_trial_ = true;
@@ -302,6 +330,7 @@ void Choice::changed(const Decision& decision) {
 
 void Choice::left() {
   after_trial_ = false;
+  before_trial_.reset();
   begin();
 }
 

@@ -113,13 +113,19 @@ struct ChoiceOptions {
   double kept_loss_frames = 1.5;
   double trial_reach = 1.3;         ///< only of ways predicted to take at most this much more
   double trial_again_frames = 600;  ///< a way is tried again after so many
+  /// And once in what a cut shows when it is predicted to take at most this share more: models are no better
+  /// than that. (25 000 draws of which none hides another on an H200: `hi-z` was taken to cost 1 % less than
+  /// `inline` and the octree, and costs 4 % more.)
+  double near_share = 0.03;
+  double near_frames = 20;      ///< after the cut, when what was measured is of what is shown
+  double regret_share = 0.005;  ///< after a trial, what was before is better when it takes less by this share
 };
 
 /// Hysteresis, and trials. A change soon after a change doubles what has to be missed before the next (up to
 /// 15 times penalty_frames), which wears off.
 class Choice {
  public:
-  explicit Choice(const ChoiceOptions& options = {}) : options_(options) {}
+  explicit Choice(const ChoiceOptions& options = {}) : options_(options) { since_taken_.fill(1e6); }
 
   struct Decision {
     Verdict verdict;
@@ -130,6 +136,7 @@ class Choice {
   };
   /// `elapsed`: frames since the last decision. `correction`: what was measured, null when nothing is
   /// learned. `cut`: this frame shows something else than the one before.
+  /// Offers keep their numbers from one decision to the next; at most kMethods.
   [[nodiscard]] Decision decide(std::span<const Offer> offers, std::size_t present, std::uint32_t elapsed,
                                 const Correction* correction, bool cut = false);
   /// A decision was carried out. (One that asks for a way that has to be prepared is repeated until then.)
@@ -142,17 +149,19 @@ class Choice {
   [[nodiscard]] std::uint32_t since_change() const { return static_cast<std::uint32_t>(since_change_); }
 
  private:
-  [[nodiscard]] double trial_cost_s(const Offer& now, const Offer& other) const;
-  [[nodiscard]] bool worth_a_trial(const Offer& now, const Offer& other, const Correction& correction) const;
-  /// The offer to try: of those that were never measured the one predicted to take least, else the best of
-  /// all others; offers.size(): none is worth it. While the best is being prepared, only others that are
-  /// ready.
-  [[nodiscard]] std::size_t to_try(std::span<const Offer> offers, std::size_t present, std::size_t best,
-                                   bool preparing, const Correction& correction) const;
+  [[nodiscard]] double trial_cost_s(const Offer& now, const Offer& other, bool known) const;
+  [[nodiscard]] bool worth_a_trial(const Offer& now, const Offer& other, std::size_t number,
+                                   const Correction& correction) const;
+  /// The offer to try: of those that were never measured the one predicted to take least, else of all others
+  /// that are worth it; offers.size(): none is. While the best is being prepared, only others that are ready.
+  [[nodiscard]] std::size_t to_try(std::span<const Offer> offers, std::size_t present, bool preparing,
+                                   const Correction& correction) const;
   /// What speaks against a change; nothing: it is to be made.
   [[nodiscard]] std::optional<Reason> objection(const Offer& now, const Offer& other, std::size_t number,
                                                 double elapsed);
-  void pass(double elapsed, double frame_s);
+  void pass(double elapsed, std::size_t present, double frame_s);
+  /// A trial that is over: is what was before better after all?
+  [[nodiscard]] bool regretted(std::span<const Offer> offers, const Offer& now);
   void begin();
   [[nodiscard]] bool far_better(const Offer& other, const Offer& now) const;
   /// Another that is to be taken instead of a way that was just taken, and loses: a trial that lasted long
@@ -166,6 +175,10 @@ class Choice {
   double missed_s_ = 0;  // by not changing to what is wanted
   double since_change_ = 1e6;
   double since_trial_ = 1e6;
+  double since_cut_ = 1e6;
+  std::array<double, kMethods> since_taken_{};  // of offers, frames
+  std::size_t present_ = 0;                     // at the last decision
+  std::optional<std::size_t> before_trial_;     // until it is judged
   double penalty_ = 0;
   double trial_left_ = 0;   // frames
   double kept_lost_s_ = 0;  // meanwhile, to what would have been better

@@ -263,7 +263,7 @@ Prediction predict(Method method, const FrameFacts& f, const UnitCosts& c, const
     p.update_octree_s = update_octree_s(n, t);
     p.cull_s = traverse_s(n, t) + cull_octree_s(n, t) + taken.listed * t.list;
   } else if (method != Method::brute && method != Method::hi_z) {
-    p.cull_s = cull_scene_s(n, t);
+    p.cull_s = cull_scene_s(n, t) + f.in_frustum.draws * c.list_draw_s;
   }
   p.record_s = record_s(f.blended.draws, t);
   if (method == Method::hi_z) {

@@ -32,6 +32,7 @@ UnitCosts rough_costs(bool software_device) {
   c.refresh_slot_s = 10e-9;
   c.visit_node_s = 20e-9;
   c.cull_slot_s = 1e-9;
+  c.list_draw_s = 3e-9;
   c.cull_node_s = 10e-9;
   c.list_slot_s = 3e-9;
   c.record_s = software_device ? 90e-9 : 25e-9;

@@ -35,6 +35,7 @@ struct UnitCosts {
   double refresh_slot_s = 0;     ///< making boxes and sums of one anew, from a slot of it
   double visit_node_s = 0;       ///< t_trav
   double cull_slot_s = 0;        ///< t_fc: one box of many, in a row (inline)
+  double list_draw_s = 0;        ///< and listing it when it is in the frustum
   double cull_node_s = 0;        ///< t_fc: one box of a node or chunk
   double list_slot_s = 0;        ///< octree-record: bringing a slot of a chunk in order
   double record_s = 0;           ///< t_buf: a draw recorded in this frame, and sent

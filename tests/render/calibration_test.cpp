@@ -96,7 +96,7 @@ TEST_CASE("calibration: a damaged file is named with what is wrong in it") {
   CHECK(holds(error_after([&](json& d) { units(d)["drawS"] = 3; }), "/units/drawS: must be an object"));
   CHECK(holds(error_after([](json& d) { d["units"] = nullptr; }), "/units: must be an object"));
   CHECK(holds(error_after([](json& d) { d["version"] = 3; }),
-              "/version: this program reads version 7, not 3; run"));
+              "/version: this program reads version 8, not 3; run"));
   CHECK(holds(error_after([](json& d) { d["schema"] = "sceneplay/frames"; }), "no calibration"));
   CHECK(holds(error_after([](json& d) { d["size"] = {0, 10}; }), "/size"));
   CHECK(holds(error_after([](json& d) { d["size"] = {-5, 10}; }), "/size"));
@@ -214,7 +214,7 @@ TEST_CASE("calibration: what took too long to be measured stays rough, and the f
   if (!read) FAIL(read.error().str());
 }
 
-TEST_CASE("calibration: triangles, those between samples, and large frames come out as they were put in") {
+TEST_CASE("calibration: tests, triangles, those between samples, and large frames come out as put in") {
   using calibration::Trial;
   const calibration::TestScene test =
       calibration::make_test_scene(calibration::test_sizes(true, true), {320, 180});
@@ -235,7 +235,9 @@ TEST_CASE("calibration: triangles, those between samples, and large frames come 
       m.samples = 1;
       m.steady.device_s = m.steady.gpu_s =
           1e-3 + (box ? step.draws * (many ? many_s : 5e-6) : triangles * triangle_s + vertices * 40e-9);
-      m.report.facts.in_frustum = {static_cast<double>(step.draws), vertices, 0, 0, 0, triangles};
+      const double seen = step.draws * (step.trial == Trial::halved_boxes ? 0.5 : 1.0);
+      m.report.facts.in_frustum = {seen, vertices, 0, 0, 0, triangles};
+      m.steady.plan_s = 1e-4 + step.draws * 2e-9 + seen * 6e-9;
     }
     Calibration out = sample();
     out.costs = model::rough_costs(true);
@@ -245,6 +247,8 @@ TEST_CASE("calibration: triangles, those between samples, and large frames come 
   const model::UnitCosts level = fitted(5e-6);
   CHECK(level.triangle_s == Approx(200e-9).epsilon(0.01));
   CHECK(level.speck_triangle_s == Approx(100e-9).epsilon(0.01));
+  CHECK(level.cull_slot_s == Approx(2e-9));
+  CHECK(level.list_draw_s == Approx(6e-9));
   CHECK(level.bulk.y.back() == Approx(1));
   CHECK(fitted(4e-6).bulk.y.back() == Approx(0.8));
   CHECK(fitted(6e-6).bulk.y.back() == 1);  // more never take longer each

@@ -17,6 +17,7 @@ UnitCosts units() {
   c.refresh_slot_s = 0.75;
   c.visit_node_s = 5;
   c.cull_slot_s = 0.5;
+  c.list_draw_s = 0.375;
   c.cull_node_s = 7;
   c.list_slot_s = 0.25;
   c.record_s = 11;
@@ -163,8 +164,8 @@ TEST_CASE("predictions: ways that record each frame") {
   CHECK(brute.frame_s == Approx(brute.cpu_s + brute.gpu_s + 500));
 
   const Prediction in = predict(Method::inline_frustum, facts(), units(), kOneByOne);
-  CHECK(in.cull_s == Approx(500));
-  CHECK(in.cpu_s == Approx(10'000 + kUpdate + 500 + 1100));
+  CHECK(in.cull_s == Approx(500 + 100 * 0.375));
+  CHECK(in.cpu_s == Approx(10'000 + kUpdate + 500 + 100 * 0.375 + 1100));
   CHECK(in.gpu_s == Approx(kDevice + 100 * kDraw));
   CHECK(in.queries_cpu_s + in.query_device_s + in.secondaries_s + in.update_octree_s == 0);
 
