@@ -44,6 +44,10 @@ constexpr double kIdleShare = 0.7;
 constexpr std::size_t kSlice = 512;  ///< slots between two looks at the clock: some 0.1 ms
 /// No more slots than these are behind: the rest is done at once when the octree is taken.
 constexpr std::size_t kNearlyDone = 4096;
+/// Frames are not all alike, and where the processor takes about as long as the device now one is late, now
+/// the other: the 12-norm of both. (25 000 draws on H200s, `inline`: 2.55 and 2.61 ms in means, frames
+/// of 2.64 to 2.74; this says 2.73.)
+constexpr double kUneven = 12;
 /// Fewer levels of changes in a frame say nothing of what one takes.
 constexpr double kFewLevels = 500;
 /// Of frames in which something changes, one in so many counts the chunks that are touched.
@@ -378,7 +382,10 @@ double Adaptive::frame_s(const model::Sides& sides) const {
   model::TimeUnits units;
   units.empty_frame = context_.frames_in_flight <= 1 ? context_.costs.latency_s : 0.0;
   units.overlap = context_.costs.frame_overlap;
-  return model::frame_s(sides.cpu_s, sides.gpu_s, context_.frames_in_flight, units);
+  const double even_s = model::frame_s(sides.cpu_s, sides.gpu_s, context_.frames_in_flight, units);
+  if (context_.frames_in_flight <= 1 || context_.device.info.type == "CPU") return even_s;
+  const auto [less, more] = std::minmax(sides.cpu_s, sides.gpu_s);
+  return more <= 0.0 ? even_s : even_s * std::pow(1.0 + std::pow(less / more, kUneven), 1.0 / kUneven);
 }
 
 /// What is put off is done, and what is not fresh in the frustum recorded.
