@@ -16,6 +16,10 @@ class Queries final : public QueryOctree {
     for (std::size_t kind = 0; kind < kKinds; ++kind) choosers_.emplace_back(settings);
   }
 
+  void put_off_queries() override {
+    for (QueryChooser& chooser : choosers_) chooser.rest();
+  }
+
   void add_memory(MemoryAccount& to) const override {
     QueryOctree::add_memory(to);
     for (const QueryChooser& chooser : choosers_) to.add_host(MemoryKind::queries, chooser.memory_bytes());

@@ -542,6 +542,10 @@ void QueryChooser::choose(const Frame& frame, QueryPlan& plan) {
   if (frame.chunks.empty()) return;
   measure(frame);
   query_of_.assign(frame.chunks.size(), kNone);
+  if (std::exchange(rest_next_, false)) {
+    rest_ = 0;
+    begin_resting();
+  }
   if (phase_ == Phase::resting) {
     const double change = std::abs(seconds_.back() - seconds_at_rest_);
     if (frame_ >= wake_ || change > kWakeChange * seconds_at_rest_) {

@@ -62,6 +62,8 @@ class QueryChooser {
   void learn(std::span<const Asked> asked, std::span<const std::uint32_t> samples);
   /// Fills an empty plan.
   void choose(const Frame& frame, QueryPlan& plan);
+  /// From the next frame on it rests, as after asking for nothing: somebody knows better.
+  void rest() { rest_next_ = true; }
 
   /// Of a chunk by itself.
   [[nodiscard]] bool known_visible(std::uint32_t chunk) const {
@@ -166,6 +168,7 @@ class QueryChooser {
 
   Settings settings_;
   Phase phase_ = Phase::gathering;
+  bool rest_next_ = false;
   std::vector<Part> nodes_, chunks_;
   std::uint32_t frame_ = 0, epoch_ = 1;
 
