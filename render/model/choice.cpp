@@ -136,11 +136,11 @@ std::string in_words(const Verdict& v) {
 
 void Choice::pass(double elapsed, std::size_t present, double frame_s) {
   since_change_ += elapsed;
-  since_trial_ += elapsed;
   since_cut_ = cut_ ? 0.0 : since_cut_ + elapsed;
   for (double& frames : since_taken_) frames += elapsed;
   present_ = present;
-  since_taken_[present] = 0.0;
+  // One that is left at a cut has not drawn what is shown then.
+  since_taken_[present] = cut_ ? 1.0 : 0.0;
   trial_left_ = std::max(0.0, trial_left_ - elapsed);
   penalty_ *= std::pow(0.995, elapsed);
   if (trial_purse_s_ < 0.0) trial_purse_s_ = std::min(options_.advance_frames * frame_s, options_.advance_s);
@@ -157,43 +157,47 @@ double Choice::trial_cost_s(const Offer& now, const Offer& other, bool known) co
   return other.change_s + options_.trial_frames * std::max(worse_s, other.frame_s - now.frame_s);
 }
 
-bool Choice::worth_a_trial(const Offer& now, const Offer& other, std::size_t number,
-                           const Correction& correction) const {
-  const bool known = correction.knows(other.method);
+bool Choice::in_reach(const Offer& now, const Offer& other, std::size_t number, bool known) const {
+  if (options_.trial_share <= 0.0) return false;
   // What was measured before the cut was of something else, and may be off by more than lies between them.
   const bool stale = since_cut_ >= options_.near_frames && since_taken_[number] > since_cut_ &&
                      other.frame_s <= (1.0 + options_.near_share) * now.frame_s;
-  if (known && !stale && since_trial_ < options_.trial_again_frames) return false;
+  if (known && !stale && since_taken_[number] < options_.trial_again_frames) return false;
   const double reach = known ? 0.5 * (1.0 + options_.trial_reach) : options_.trial_reach;
-  if (other.frame_s > reach * now.frame_s) return false;
-  if (options_.trial_share <= 0.0) return false;
-  return trial_cost_s(now, other, known) <= trial_purse_s_;
+  return other.frame_s <= reach * now.frame_s;
 }
 
 std::size_t Choice::to_try(std::span<const Offer> offers, std::size_t present, bool preparing,
                            const Correction& correction) const {
   // Not the best alone: a way that is guessed too dear would never be measured beside one that is guessed too
-  // cheap.
+  // cheap. While one that was never measured is saved up for, none that was is tried.
   std::size_t found = offers.size();
-  bool found_known = true;
-  for (std::size_t i = 0; i < offers.size(); ++i) {
-    const bool known = correction.knows(offers[i].method);
-    if (i == present || !offers[i].possible || (preparing && (known || !offers[i].ready))) continue;
-    if (known && !found_known) continue;
-    if (!worth_a_trial(offers[present], offers[i], i, correction)) continue;
-    if (found < offers.size() && known == found_known && offers[i].frame_s >= offers[found].frame_s) continue;
-    found = i;
-    found_known = known;
+  bool only_unknown = preparing;
+  for (const bool known : {false, true}) {
+    if (known && only_unknown) break;
+    for (std::size_t i = 0; i < offers.size(); ++i) {
+      const Offer& offer = offers[i];
+      if (i == present || !offer.possible || (preparing && !offer.ready)) continue;
+      if (correction.knows(offer.method) != known || !in_reach(offers[present], offer, i, known)) continue;
+      only_unknown = only_unknown || !known;
+      if (trial_cost_s(offers[present], offer, known) > trial_purse_s_) continue;
+      if (found == offers.size() || offer.frame_s < offers[found].frame_s) found = i;
+    }
   }
   return found;
 }
 
-/// Both were measured just now, so no margin keeps what is worse.
+/// As far as what each way takes is known, it was measured not long ago, so no margin keeps what is worse.
 bool Choice::regretted(std::span<const Offer> offers, const Offer& now) {
   if (cut_) before_trial_.reset();
   if (!before_trial_ || trial_left_ > 0.0) return false;
   const Offer& before = offers[*before_trial_];
-  if (before.possible && before.ready && before.frame_s < (1.0 - options_.regret_share) * now.frame_s)
+  const double saved_s = now.frame_s - before.frame_s;
+  const bool best = std::none_of(offers.begin(), offers.end(), [&](const Offer& o) {
+    return o.possible && o.ready && o.frame_s < before.frame_s;
+  });
+  if (before.possible && before.ready && best && saved_s > options_.regret_share * now.frame_s &&
+      saved_s * options_.horizon_frames >= before.change_s)
     return true;
   before_trial_.reset();
   return false;
@@ -312,7 +316,6 @@ Choice::Decision Choice::decide(std::span<const Offer> offers, std::size_t prese
 void Choice::changed(const Decision& decision) {
   before_trial_.reset();
   if (decision.trial) {
-    since_trial_ = 0;
     before_trial_ = present_;
     // What is left may pay for trying another one that was never measured.
     trial_purse_s_ = std::max(0.0, trial_purse_s_ - decision.trial_cost_s);

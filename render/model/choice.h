@@ -112,7 +112,7 @@ struct ChoiceOptions {
   /// that grows by a twentieth a frame, the present way's outgrow what was lost.
   double kept_loss_frames = 1.5;
   double trial_reach = 1.3;         ///< only of ways predicted to take at most this much more
-  double trial_again_frames = 600;  ///< a way is tried again after so many
+  double trial_again_frames = 600;  ///< a way is tried again when it was not taken for so many
   /// And once in what a cut shows when it is predicted to take at most this share more: models are no better
   /// than that. (25 000 draws of which none hides another on an H200: `hi-z` was taken to cost 1 % less than
   /// `inline` and the octree, and costs 4 % more.)
@@ -150,10 +150,11 @@ class Choice {
 
  private:
   [[nodiscard]] double trial_cost_s(const Offer& now, const Offer& other, bool known) const;
-  [[nodiscard]] bool worth_a_trial(const Offer& now, const Offer& other, std::size_t number,
-                                   const Correction& correction) const;
-  /// The offer to try: of those that were never measured the one predicted to take least, else of all others
-  /// that are worth it; offers.size(): none is. While the best is being prepared, only others that are ready.
+  /// Is it time to try it, and is it predicted to take little enough?
+  [[nodiscard]] bool in_reach(const Offer& now, const Offer& other, std::size_t number, bool known) const;
+  /// The offer to try, if it can be paid: of those in reach that were never measured the one predicted to
+  /// take least, without any of the others; offers.size(): none. While the best is being prepared, only one
+  /// that was never measured and is ready.
   [[nodiscard]] std::size_t to_try(std::span<const Offer> offers, std::size_t present, bool preparing,
                                    const Correction& correction) const;
   /// What speaks against a change; nothing: it is to be made.
@@ -174,7 +175,6 @@ class Choice {
   double wanted_frames_ = 0;
   double missed_s_ = 0;  // by not changing to what is wanted
   double since_change_ = 1e6;
-  double since_trial_ = 1e6;
   double since_cut_ = 1e6;
   std::array<double, kMethods> since_taken_{};  // of offers, frames
   std::size_t present_ = 0;                     // at the last decision

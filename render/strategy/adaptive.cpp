@@ -68,10 +68,10 @@ constexpr double kBurstFrames = 20;
 /// but no longer than this, once answers are in: a guess that is wrong is lost time.
 constexpr std::uint32_t kGathering = 40;
 constexpr double kGatheringS = 0.25;
-/// The octree is taken with queries when they are to save this share. Without, it asks nothing at first:
-/// gathering took 25 % longer for ten frames where nothing was hidden, and lost the octree its trial (25 000
-/// draws on an H200).
-constexpr double kAskingGains = 0.02;
+/// The octree is taken with queries when they are to save this share. Without, it asks nothing at first when
+/// `hi-z` just saw this share of what is in the frustum: gathering took 25 % longer for ten frames where
+/// nothing was hidden, and lost the octree its trial (25 000 draws on an H200).
+constexpr double kAskingGains = 0.02, kAllSeen = 0.85;
 
 class Adaptive final : public Strategy {
  public:
@@ -135,8 +135,8 @@ class Adaptive final : public Strategy {
   }
   /// May queries still find out what is hidden? The first answers come after the frames in flight.
   [[nodiscard]] bool gathering() const {
-    return since_change_ < kGathering &&
-           (since_change_ <= context_.frames_in_flight || since_change_s_ <= kGatheringS);
+    return asking_frames_ < kGathering &&
+           (asking_frames_ <= context_.frames_in_flight || asking_s_ <= kGatheringS);
   }
   void prepare();
   void expect();
@@ -176,7 +176,8 @@ class Adaptive final : public Strategy {
   bool cut_ = false;            // it shows something else than the one before
   std::uint32_t since_cut_ = 0;
   std::uint32_t since_change_ = 1000;
-  double since_change_s_ = 0;           // about
+  std::uint32_t asking_frames_ = 1000;  // since the tree was taken, or began to ask
+  double asking_s_ = 0;                 // about
   bool left_in_burst_ = false;          // since the last plan
   bool queries_put_off_ = false;        // since the tree was taken
   double choose_s_ = 0;                 // mean
@@ -258,7 +259,8 @@ double Adaptive::idle_s() const {
 /// less changes than at the last decision.
 bool Adaptive::due() const {
   if (frame_ <= 2 || cut_) return true;
-  const auto [less, more] = std::minmax(changed_.value(), decided_changed_);
+  const double changed = changed_.value();
+  const auto [less, more] = std::minmax(changed, decided_changed_);
   if (more > kManyChanges && more > 2.0 * less) return true;
   const double share_s =
       (choice_.in_trial() ? kChooseShareInTrial : kChooseShare) * std::max(1e-6, frame_s({cpu_s_, gpu_s_}));
@@ -269,8 +271,9 @@ bool Adaptive::due() const {
 void Adaptive::plan(const View& view) {
   ++frame_;
   ++since_change_;
-  if (std::exchange(left_in_burst_, false)) since_change_ = 0, since_change_s_ = 0;
-  since_change_s_ += frame_s({cpu_s_, gpu_s_});
+  if (std::exchange(left_in_burst_, false)) since_change_ = 0;
+  ++asking_frames_;
+  asking_s_ += frame_s({cpu_s_, gpu_s_});
   learn_of_last_frame();
   planned_update_s_ = update_tree_s_;
   planned_changed_ = last_changed_;
@@ -365,7 +368,10 @@ void Adaptive::gather(const View& view) {
   }
   exact_ = facts_;
   // As long as answers are being gathered they say nothing yet: what was known or guessed before still holds.
-  queries_put_off_ = queries_put_off_ && way_ == tree && facts_.asked <= 0.0;
+  if (queries_put_off_ && (way_ != tree || facts_.asked > 0.0)) {
+    queries_put_off_ = false;
+    asking_frames_ = 0, asking_s_ = 0;
+  }
   const bool unasked = queries_put_off_ || (gathering() && facts_.hidden.draws <= 0.0);
   const bool exact_queries = facts_.exact_queries;
   if (way_ == tree && unasked) facts_.exact_queries = false;
@@ -474,16 +480,18 @@ void Adaptive::prepare() {
 }
 
 void Adaptive::take(Way way, const View& view) {
+  const bool all_seen =
+      way_ == device && facts_.exact_seen && facts_.seen.draws >= kAllSeen * facts_.in_frustum.draws;
   way_ = way;
   since_change_ = 0;
-  since_change_s_ = 0;
+  asking_frames_ = 0, asking_s_ = 0;
   preparing_ = false;
   if (way == tree) {
     while (!tree_->catch_up(std::size_t{1} << 30)) {
     }
     built_ = true;
-    queries_put_off_ = offers_[tree].method == model::Method::octree;
-    if (queries_put_off_) tree_->put_off_queries();
+    queries_put_off_ = all_seen && offers_[tree].method == model::Method::octree;
+    tree_->put_off_queries(queries_put_off_);
   }
   taken().plan(view);
 }

@@ -49,8 +49,9 @@ class CachedOctree : public Strategy {
   [[nodiscard]] Octree::Refreshed refreshed() const {
     return octree_ ? octree_->tree().refreshed() : Octree::Refreshed{};
   }
-  /// Queries, if it asks any, are put off for about 128 frames, or until far more is in the frustum.
-  virtual void put_off_queries() {}
+  /// Queries, if it asks any, are put off for about 128 frames, or until far more or less is in the frustum;
+  /// or no longer.
+  virtual void put_off_queries(bool /*yes*/) {}
   /// After plan(), before anything is drawn: what drawing the octree would find. All of it is exact but the
   /// fragments. Fills the octree's part of `facts`.
   void foresee(model::FrameFacts& facts) const;

@@ -16,8 +16,8 @@ class Queries final : public QueryOctree {
     for (std::size_t kind = 0; kind < kKinds; ++kind) choosers_.emplace_back(settings);
   }
 
-  void put_off_queries() override {
-    for (QueryChooser& chooser : choosers_) chooser.rest();
+  void put_off_queries(bool yes) override {
+    for (QueryChooser& chooser : choosers_) chooser.rest(yes);
   }
 
   void add_memory(MemoryAccount& to) const override {

@@ -372,12 +372,18 @@ void QueryChooser::guess(std::vector<Candidate>& candidates, std::size_t most, d
 
 void QueryChooser::begin_gathering() {
   phase_ = Phase::gathering;
+  told_to_rest_ = false;
   ++epoch_;
   gathered_ = {};
   window_.clear();
   window_at_ = 0;
   kept_share_ = 1;
   useless_ = 0;
+}
+
+void QueryChooser::rest(bool yes) {
+  rest_next_ = yes;
+  if (!yes && told_to_rest_) wake_ = 0;
 }
 
 void QueryChooser::begin_resting() {
@@ -543,8 +549,10 @@ void QueryChooser::choose(const Frame& frame, QueryPlan& plan) {
   measure(frame);
   query_of_.assign(frame.chunks.size(), kNone);
   if (std::exchange(rest_next_, false)) {
-    rest_ = 0;
-    begin_resting();
+    // After resting in vain the next rest is longer, whoever told.
+    if (phase_ != Phase::resting) begin_resting();
+    wake_ = std::max(wake_, frame_ + kFirstRest);
+    told_to_rest_ = true;
   }
   if (phase_ == Phase::resting) {
     const double change = std::abs(seconds_.back() - seconds_at_rest_);

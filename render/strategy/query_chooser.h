@@ -35,7 +35,7 @@ namespace scenegen::render {
 /// often such guesses were wrong, those first that are wrong least often: where most around is hidden.
 class QueryChooser {
  public:
-  /// Parts never asked before that may be asked in a frame.
+  /// Parts never asked before that may be asked in a frame of gathering.
   static constexpr std::size_t kGatheredAtOnce = 64;
 
   struct Settings {
@@ -62,8 +62,9 @@ class QueryChooser {
   void learn(std::span<const Asked> asked, std::span<const std::uint32_t> samples);
   /// Fills an empty plan.
   void choose(const Frame& frame, QueryPlan& plan);
-  /// From the next frame on it rests, as after asking for nothing: somebody knows better.
-  void rest() { rest_next_ = true; }
+  /// From the next frame on it rests, as after asking for nothing: somebody knows that nothing is hidden; or
+  /// such a rest is over.
+  void rest(bool yes);
 
   /// Of a chunk by itself.
   [[nodiscard]] bool known_visible(std::uint32_t chunk) const {
@@ -168,7 +169,7 @@ class QueryChooser {
 
   Settings settings_;
   Phase phase_ = Phase::gathering;
-  bool rest_next_ = false;
+  bool rest_next_ = false, told_to_rest_ = false;
   std::vector<Part> nodes_, chunks_;
   std::uint32_t frame_ = 0, epoch_ = 1;
 

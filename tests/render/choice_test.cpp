@@ -282,6 +282,29 @@ TEST_CASE("what a cut shows has a trial of its own for a way that is predicted t
   CHECK(frames_until_taken({.trial_again_frames = 1e9, .near_share = 0}, 4.04e-3) == 400);
 }
 
+TEST_CASE("what a cut shows has one trial of a way that is near, and of one that was left at the cut") {
+  Machine machine;
+  Replay replay({.trial_again_frames = 1e9});
+  for (int i = 0; i < 20; ++i) {
+    replay.correction.measured(Method::inline_frustum, 100, {4e-3, 1e-3}, {4e-3, 1e-3});
+    replay.correction.measured(Method::octree, 100, {4e-3, 1e-3}, {4e-3, 1e-3});
+  }
+  for (int i = 0; i < 300; ++i) replay.frame(machine, {4e-3, 6e-3}, {4e-3, 6e-3});
+  REQUIRE(replay.present == 0);
+  // There and back, for as long as the same is shown.
+  std::size_t before = replay.changes;
+  for (int i = 0; i < 1000; ++i) replay.frame(machine, {4e-3, 4.04e-3}, {4e-3, 4.2e-3}, 0, true, i == 0);
+  CHECK(replay.changes == before + 2);
+  CHECK(replay.present == 0);
+  // Far better at a cut, and near 30 frames later.
+  before = replay.changes;
+  replay.frame(machine, {9e-3, 4e-3}, {9e-3, 4e-3}, 0, true, true);
+  REQUIRE(replay.present == 1);
+  for (int i = 0; i < 200; ++i) replay.frame(machine, {4.04e-3, 4e-3}, {4.2e-3, 4e-3}, 0);
+  CHECK(replay.changes == before + 3);
+  CHECK(replay.present == 1);
+}
+
 TEST_CASE("after a trial no margin keeps what turned out to be worse") {
   const auto kept = [](double octree_s, double regret_share) {
     Machine machine;

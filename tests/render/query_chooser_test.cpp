@@ -262,6 +262,36 @@ TEST_CASE("where nothing is hidden, gathering ends in rest, and is tried again m
   CHECK(begun[1] - begun[0] > begun[0]);
 }
 
+TEST_CASE("told to rest, nothing is asked for 128 frames, or until told otherwise") {
+  const auto queries_in = [](int told_after, int frames, bool otherwise) {
+    World world({true, true, true}, model::rough_costs(false));
+    for (int i = 0; i < told_after; ++i) world.frame();
+    if (told_after > 0) CHECK(world.plan.queries > 0);
+    world.chooser.rest(true);
+    std::size_t queries = 0;
+    for (int i = 0; i < frames; ++i) {
+      if (i == 20 && otherwise) world.chooser.rest(false);
+      world.frame();
+      queries += world.plan.queries;
+      if (queries == 0) CHECK(world.plan.second.empty());
+    }
+    return queries;
+  };
+  for (const int told_after : {0, 60}) {
+    CHECK(queries_in(told_after, 128, false) == 0);
+    CHECK(queries_in(told_after, 140, false) > 0);
+    CHECK(queries_in(told_after, 20, true) == 0);
+    CHECK(queries_in(told_after, 24, true) > 0);
+  }
+  // A rest of its own does not end by that.
+  World world({true, true, true}, model::rough_costs(false));
+  world.wall_z_m = -1000;
+  while (world.chooser.phase() != QueryChooser::Phase::resting) world.frame();
+  world.chooser.rest(false);
+  world.frame();
+  CHECK(world.plan.queries == 0);
+}
+
 TEST_CASE("what stays hidden shares queries, and is asked one by one when something of it comes into view") {
   for (const bool exact : {true, false}) {
     INFO("exact " << exact);
