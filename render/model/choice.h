@@ -116,7 +116,7 @@ struct ChoiceOptions {
   /// And once in what a cut shows when it is predicted to take at most this share more: models are no better
   /// than that. (25 000 draws of which none hides another on an H200: `hi-z` was taken to cost 1 % less than
   /// `inline` and the octree, and costs 4 % more.)
-  double near_share = 0.03;
+  double near_share = 0.05;
   double near_frames = 20;      ///< after the cut, when what was measured is of what is shown
   double regret_share = 0.005;  ///< after a trial, what was before is better when it takes less by this share
 };

@@ -69,8 +69,8 @@ constexpr double kBurstFrames = 20;
 constexpr std::uint32_t kGathering = 40;
 constexpr double kGatheringS = 0.25;
 /// The octree is taken with queries when they are to save this share. Without, it asks nothing at first when
-/// `hi-z` just saw this share of what is in the frustum: gathering took 25 % longer for ten frames where
-/// nothing was hidden, and lost the octree its trial (25 000 draws on an H200).
+/// `hi-z` saw this share of what is in the frustum, since the last cut: gathering took 25 % longer for ten
+/// frames where nothing was hidden, and lost the octree its trial (25 000 draws on an H200).
 constexpr double kAskingGains = 0.02, kAllSeen = 0.85;
 
 class Adaptive final : public Strategy {
@@ -180,7 +180,8 @@ class Adaptive final : public Strategy {
   double asking_s_ = 0;                 // about
   bool left_in_burst_ = false;          // since the last plan
   bool queries_put_off_ = false;        // since the tree was taken
-  double choose_s_ = 0;                 // mean
+  double seen_share_ = -1;  // of draws in the frustum, by `hi-z` since the last cut; below 0: unknown
+  double choose_s_ = 0;     // mean
   double cpu_s_ = 2e-3, gpu_s_ = 2e-3;  // means of what frames took
   std::uint32_t passes_ = 0;
   bool preparing_ = false;
@@ -359,6 +360,9 @@ void Adaptive::gather(const View& view) {
     // What is seen after a change to it says nothing yet.
     if (since_change_ < kSettling + context_.frames_in_flight) facts_.exact_seen = false;
   }
+  if (cut_) seen_share_ = -1;
+  if (way_ == device && facts_.exact_seen && facts_.in_frustum.draws > 0.0)
+    seen_share_ = facts_.seen.draws / facts_.in_frustum.draws;
   facts_.hi_z_blocks = device_->blocks();
   facts_.changed = changed_.value();
   if (context_.shadows) {
@@ -480,8 +484,6 @@ void Adaptive::prepare() {
 }
 
 void Adaptive::take(Way way, const View& view) {
-  const bool all_seen =
-      way_ == device && facts_.exact_seen && facts_.seen.draws >= kAllSeen * facts_.in_frustum.draws;
   way_ = way;
   since_change_ = 0;
   asking_frames_ = 0, asking_s_ = 0;
@@ -490,7 +492,7 @@ void Adaptive::take(Way way, const View& view) {
     while (!tree_->catch_up(std::size_t{1} << 30)) {
     }
     built_ = true;
-    queries_put_off_ = all_seen && offers_[tree].method == model::Method::octree;
+    queries_put_off_ = seen_share_ >= kAllSeen && offers_[tree].method == model::Method::octree;
     tree_->put_off_queries(queries_put_off_);
   }
   taken().plan(view);

@@ -278,7 +278,7 @@ TEST_CASE("what a cut shows has a trial of its own for a way that is predicted t
   const ChoiceOptions once{.trial_again_frames = 1e9};
   CHECK(frames_until_taken(once, 4.04e-3) > static_cast<int>(once.near_frames));
   CHECK(frames_until_taken(once, 4.04e-3) < 60);
-  CHECK(frames_until_taken(once, 4.2e-3) == 400);
+  CHECK(frames_until_taken(once, 4.28e-3) == 400);
   CHECK(frames_until_taken({.trial_again_frames = 1e9, .near_share = 0}, 4.04e-3) == 400);
 }
 
