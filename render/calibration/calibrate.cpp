@@ -27,7 +27,7 @@ class Runs {
     calibration::TestSizes few;
     few.boxes = {1, 2};
     few_ = calibration::make_test_scene(few, options.size);
-    budget_s_ = options.budget_s > 0.0 ? options.budget_s : options.quick ? 8.0 : software ? 75.0 : 12.0;
+    budget_s_ = options.budget_s > 0.0 ? options.budget_s : options.quick ? 8.0 : software ? 75.0 : 11.0;
     how_.longest_frame_s = software ? 0.5 : 0.05;
     // A round of large pictures takes a software device half of the budget.
     if (software) how_.least_rounds = 1;
