@@ -1,5 +1,6 @@
 // sceneplay frames FILE -o DIR: plays a file and writes one picture a frame.
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdio>
 #include <deque>
@@ -393,7 +394,7 @@ void add_options(Options& options, FramesRequest& r) {
   options.flag("--depth", r.depth, "also depth_00000.pfm: metres along the view direction; inf: background");
   options.flag("--show-nodes", r.show_nodes,
                "boxes of the octree's chunks over the picture: red hidden, green visible, grey not asked "
-               "about; with --strategy octree, queries-all or queries");
+               "about; with --strategy octree, queries-all, queries or (while it draws by these) adaptive");
   options.add("--report", text_value(r.report, "FILE"), "counts and stage times of every frame as JSON");
   options.add("--trace", text_value(r.trace, "FILE"),
               "one row a frame: camera, choice, predictions, counts, stage times; .csv or .json");
@@ -439,6 +440,12 @@ int frames_verb(std::span<const std::string> arguments) {
       return fail(ErrorKind::usage, "--times", "has no place beside --fps and --duration");
     if (options.given("--camera") && options.given("--camera-path"))
       return fail(ErrorKind::usage, "--camera", "has no place beside --camera-path");
+    constexpr std::array kWithNodes{"octree", "queries-all", "queries", "adaptive"};
+    if (request.show_nodes &&
+        std::find(kWithNodes.begin(), kWithNodes.end(), request.strategy) == kWithNodes.end())
+      return fail(ErrorKind::usage, "--show-nodes",
+                  "'" + request.strategy +
+                      "' keeps no nodes; with --strategy octree, queries-all, queries or " + "adaptive");
     if (!request.camera_path.empty()) {
       if (auto readable = check_camera_path(request.camera_path); !readable) return readable;
     }

@@ -215,7 +215,10 @@ Result<Calibration> parse_calibration(std::string_view text, const std::string& 
 Result<void> check_calibration(const Calibration& c, const CalibrationKey& wanted, const std::string& where) {
   const auto differs = [&](const std::string& measured, const std::string& now) {
     return fail(ErrorKind::bad_input, where,
-                "was measured for " + measured + ", this is " + now + "; measure with sceneplay calibrate");
+                "was measured for " + measured + ", this is " + now +
+                    "; measure with sceneplay calibrate --size " + std::to_string(wanted.size.x) + "x" +
+                    std::to_string(wanted.size.y) + " --samples " + std::to_string(wanted.samples) +
+                    " --shadows " + (wanted.shadows ? "on" : "off"));
   };
   const CalibrationKey& k = c.key;
   if (k.device_uuid != wanted.device_uuid)

@@ -207,7 +207,7 @@ std::optional<Reason> Choice::objection(const Offer& now, const Offer& other, st
                                         double elapsed) {
   const double saved_s = now.frame_s - other.frame_s;
   const double margin_s = options_.margin * now.frame_s;
-  if (saved_s <= margin_s || wanted_ != number || cut_) {
+  if (saved_s <= margin_s || wanted_ != number || first_cut_) {
     wanted_ = number;
     wanted_frames_ = 0;
     missed_s_ = 0;
@@ -239,7 +239,7 @@ std::optional<std::size_t> Choice::lost_to(std::span<const Offer> offers, std::s
   const std::size_t best = best_of(offers, present, true);
   if (best == offers.size()) return std::nullopt;
   const double more_s = now.frame_s - offers[best].frame_s;
-  if (more_s <= options_.margin * now.frame_s || cut_) kept_lost_s_ = kept_lost_frames_ = 0;
+  if (more_s <= options_.margin * now.frame_s || first_cut_) kept_lost_s_ = kept_lost_frames_ = 0;
   if (more_s <= options_.margin * now.frame_s) return std::nullopt;
   // Frames before this was first seen may have been of something else.
   const double frames = kept_lost_s_ > 0.0 ? elapsed : std::min(elapsed, 1.0);
@@ -258,6 +258,7 @@ std::optional<std::size_t> Choice::lost_to(std::span<const Offer> offers, std::s
 Choice::Decision Choice::decide(std::span<const Offer> offers, std::size_t present, std::uint32_t elapsed,
                                 const Correction* correction, bool cut) {
   const Offer& now = offers[present];
+  first_cut_ = cut && !cut_;
   cut_ = cut;
   // Changes in a row were about another picture: one that is twice as dear must not wait for seven frames
   // more. A quarter is left.

@@ -186,7 +186,8 @@ class Choice {
   double trial_purse_s_ = -1;  // below 0: the advance was not paid yet
   bool after_trial_ = false;
   bool cut_ = false;
-  double usual_s_ = -1;  // mean of the present ways' frames; below 0: of none yet
+  bool first_cut_ = false;  // cuts in a row are a camera or a scene that moves fast
+  double usual_s_ = -1;     // mean of the present ways' frames; below 0: of none yet
 };
 
 }  // namespace scenegen::render::model

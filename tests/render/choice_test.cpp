@@ -282,6 +282,18 @@ TEST_CASE("what a cut shows has a trial of its own for a way that is predicted t
   CHECK(frames_until_taken({.trial_again_frames = 1e9, .near_share = 0}, 4.04e-3) == 400);
 }
 
+TEST_CASE("what is better for some frames in a row is taken though each of them shows something else") {
+  Machine machine;
+  Replay replay({.trial_share = 0});
+  for (int i = 0; i < 30; ++i) replay.frame(machine, {4e-3, 6e-3}, {4e-3, 6e-3});
+  REQUIRE(replay.present == 0);
+  int frames = 0;
+  for (; frames < 50 && replay.present == 0; ++frames)
+    replay.frame(machine, {4e-3, 3e-3}, {4e-3, 3e-3}, 0.0, true, true);
+  CHECK(frames >= 3);
+  CHECK(frames <= 5);
+}
+
 TEST_CASE("what a cut shows has one trial of a way that is near, and of one that was left at the cut") {
   Machine machine;
   Replay replay({.trial_again_frames = 1e9});

@@ -84,8 +84,11 @@ TEST_CASE("calibrate: kept in the cache, found there, taken as a file, refused f
   good(frames + " --size 32x18 --calibration none");
   // For other pictures it is refused, with what differs.
   const std::string taken = " --calibration " + file;
-  check_error(play(frames + " --size 49x27 --samples 1 --shadows off" + taken, cache), 1,
-              file + ": was measured for pictures of 48x27, this is 49x27");
+  check_error(
+      play(frames + " --size 49x27 --samples 1 --shadows off" + taken, cache), 1,
+      file +
+          ": was measured for pictures of 48x27, this is 49x27; measure with sceneplay calibrate --size "
+          "49x27 --samples 1 --shadows off");
   check_error(play(frames + " --size 48x27 --samples 4 --shadows off" + taken, cache), 1,
               "--samples 1, this is --samples 4");
   check_error(play(frames + " --size 48x27 --samples 1 --shadows on" + taken, cache), 1,
