@@ -434,7 +434,8 @@ void Adaptive::make_offers() {
   double tree_s = offered_s(method);
   double change_s = way_ == tree ? 0.0 : change_to_tree_s();
   const double asking_s = offered_s(Method::queries);
-  if (way_ == tree ? facts_.asked > 0.0 : asking_s < (1.0 - kAskingGains) * tree_s) {
+  const bool pays = seen_share_ < kAllSeen && asking_s < (1.0 - kAskingGains) * tree_s;
+  if (way_ == tree ? facts_.asked > 0.0 : pays) {
     // Until its parts are asked about it draws all that the octree does.
     const double frames =
         context_.frames_in_flight + facts_.chunks / static_cast<double>(QueryChooser::kGatheredAtOnce);
@@ -492,7 +493,7 @@ void Adaptive::take(Way way, const View& view) {
     while (!tree_->catch_up(std::size_t{1} << 30)) {
     }
     built_ = true;
-    queries_put_off_ = seen_share_ >= kAllSeen && offers_[tree].method == model::Method::octree;
+    queries_put_off_ = offers_[tree].method == model::Method::octree && seen_share_ >= kAllSeen;
     tree_->put_off_queries(queries_put_off_);
   }
   taken().plan(view);
