@@ -443,9 +443,9 @@ int frames_verb(std::span<const std::string> arguments) {
     constexpr std::array kWithNodes{"octree", "queries-all", "queries", "adaptive"};
     if (request.show_nodes &&
         std::find(kWithNodes.begin(), kWithNodes.end(), request.strategy) == kWithNodes.end())
-      return fail(ErrorKind::usage, "--show-nodes",
-                  "'" + request.strategy +
-                      "' keeps no nodes; with --strategy octree, queries-all, queries or " + "adaptive");
+      return fail(
+          ErrorKind::usage, "--show-nodes",
+          "'" + request.strategy + "' keeps no nodes; allowed: octree, queries-all, queries and adaptive");
     if (!request.camera_path.empty()) {
       if (auto readable = check_camera_path(request.camera_path); !readable) return readable;
     }

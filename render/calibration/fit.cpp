@@ -72,8 +72,9 @@ void Fit::draws(const Run& run) {
   const auto count = [&](std::size_t i) { return static_cast<double>(run.step(i).draws); };
   set("recordS", c_.record_s,
       slope(run, Trial::boxes, count, [&](std::size_t i) { return run.record_s(i); }));
-  // All are in the frustum, and listed; of halved boxes half. (H200's machine: 1 ns to test one, 4 to list
-  // it. Taken as one, a view away from 300 000 objects was predicted to take four times as long as it does.)
+  // All are in the frustum, and listed; of halved boxes half. (H200s' machines: 2.5 to 3 ns to test one, 1.3
+  // to 3 to list it. Taken as one, the processor was predicted to take up to 1.8 ms instead of 0.8 for a view
+  // away from 300 000 objects.)
   const double listed_s = slope(run, Trial::boxes, count, [&](std::size_t i) { return run.plan_s(i); });
   c_.list_draw_s = 0.0;
   for (const std::size_t i : run.of(Trial::halved_boxes)) {

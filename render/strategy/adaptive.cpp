@@ -68,7 +68,7 @@ constexpr double kBurstFrames = 20;
 /// but no longer than this, once answers are in: a guess that is wrong is lost time.
 constexpr std::uint32_t kGathering = 40;
 constexpr double kGatheringS = 0.25;
-/// The octree is taken with queries when they are to save this share. Without, it asks nothing at first when
+/// The octree is taken with queries when they are to save this share. It asks nothing at first when
 /// `hi-z` saw this share of what is in the frustum, since the last cut: gathering took 25 % longer for ten
 /// frames where nothing was hidden, and lost the octree its trial (25 000 draws on an H200).
 constexpr double kAskingGains = 0.02, kAllSeen = 0.85;
