@@ -217,7 +217,7 @@ TEST_CASE("what appears is asked about where most around is hidden, so that few 
   REQUIRE(totals.queries > 1000);
   CHECK(static_cast<double>(totals.queries) <= 0.1 * nodes);
   CHECK(static_cast<double>(totals.answered - totals.hidden_answers) <=
-        0.3 * static_cast<double>(totals.answered));
+        0.2 * static_cast<double>(totals.answered));  // 0.185; without a limit to guesses 0.225
   CHECK(world.plan.second.size() >= world.truly_hidden() * 6 / 10);
 }
 
