@@ -38,6 +38,10 @@ Result<BenchWay> parse_way(std::string_view text) {
     return fail(ErrorKind::usage, "", unknown_word("strategy", way.strategy, names));
   for (std::size_t i = 1; i < parts.size(); ++i) {
     if (parts[i] == "late") {
+      if (!render::strategy_traits(way.strategy).can_be_late)
+        return fail(ErrorKind::usage, "",
+                    "'" + way.strategy + "' draws the same with and without ':late'; allowed for: " +
+                        join(render::strategies_that(&render::StrategyTraits::can_be_late), ", "));
       way.late = true;
     } else if (parts[i] == "secondaries") {
       way.form = render::NodeForm::secondaries;

@@ -24,7 +24,7 @@ BenchDevice open(const BenchRequest& request, const std::string& wanted) {
   out.label = out.info.name;
   options.shared_device = *device;
   const auto chooses = std::find_if(request.ways.begin(), request.ways.end(), [](const BenchWay& way) {
-    return render::strategy_uses_costs(way.strategy);
+    return render::strategy_traits(way.strategy).uses_costs;
   });
   if (chooses != request.ways.end()) options.strategy = chooses->strategy;
   if (auto set = set_costs(options, request.drawing.calibration, request.quiet); !set) {

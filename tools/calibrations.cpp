@@ -7,6 +7,7 @@
 #include "render/calibration/calibration_file.h"
 #include "render/strategy_names.h"
 #include "tools/output.h"
+#include "tools/text.h"
 
 namespace scenegen::tools {
 namespace {
@@ -71,7 +72,8 @@ Value calibration_value(std::string& target) {
 }
 
 Result<void> set_costs(render::RendererOptions& options, const std::string& wanted, bool quiet) {
-  if (wanted == "none" || (wanted == "auto" && !render::strategy_uses_costs(options.strategy))) return {};
+  if (wanted == "none" || (wanted == "auto" && !render::strategy_traits(options.strategy).uses_costs))
+    return {};
   if (!options.shared_device) {
     auto device = render::share_device(options.device);
     if (!device) return forward_error(device);
@@ -80,13 +82,20 @@ Result<void> set_costs(render::RendererOptions& options, const std::string& want
   const render::CalibrationKey key = render::calibration_key(render::info_of(*options.shared_device),
                                                              options.size, options.samples, options.shadows);
   if (wanted != "auto" && wanted != "quick") {
+    // A word that is nearly one of ours names no file, in all likelihood.
+    if (wanted.find_first_of("./") == std::string::npos && !std::filesystem::exists(wanted)) {
+      const std::vector<std::string> words{"auto", "quick", "none"};
+      return fail(ErrorKind::usage, "--calibration",
+                  "no file '" + wanted + "'; " + unknown_word("word", wanted, words));
+    }
     Result<render::Calibration> calibration = load(wanted, key);
     if (!calibration) return forward_error(calibration);
     options.costs = calibration->costs;
     return {};
   }
   const Result<std::string> path = render::calibration_path(key);
-  if (wanted == "auto" && path && std::filesystem::exists(*path)) {
+  const bool is_kept = path && std::filesystem::exists(*path);
+  if (wanted == "auto" && is_kept) {
     const Result<render::Calibration> kept = load(*path, key);
     if (kept) {
       options.costs = kept->costs;
@@ -94,9 +103,10 @@ Result<void> set_costs(render::RendererOptions& options, const std::string& want
     }
     say(quiet, "note: " + kept.error().str());
   }
-  say(quiet, (wanted == "quick" ? std::string("note: a quick calibration runs")
-                                : "note: no calibration of this device for such pictures; a quick one runs") +
-                 " (sceneplay calibrate measures better)");
+  const char* why = wanted == "quick" ? "a quick calibration runs"
+                    : is_kept         ? "a quick calibration runs and replaces that"
+                                      : "no calibration of this device for such pictures; a quick one runs";
+  say(quiet, std::string("note: ") + why + " (sceneplay calibrate measures better)");
   render::CalibrationOptions how;
   how.shared_device = options.shared_device;
   how.size = options.size;

@@ -19,7 +19,7 @@ namespace scenegen::tools {
 [[nodiscard]] Value calibration_value(std::string& target);
 /// Sets `options.costs` as --calibration says, and `options.shared_device` when that takes opening a device.
 /// A file must be for exactly this device, size, sample count and shadows. `auto` sets nothing unless the
-/// strategy chooses by costs (strategy_uses_costs); it takes the cache's file if that is good, else measures
+/// strategy chooses by costs (StrategyTraits); it takes the cache's file if that is good, else measures
 /// quickly and keeps that there. `quick` measures in any case and keeps nothing; `none` sets nothing. What is
 /// measured is said on stderr unless `quiet`.
 [[nodiscard]] Result<void> set_costs(render::RendererOptions& options, const std::string& wanted, bool quiet);

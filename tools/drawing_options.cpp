@@ -5,9 +5,11 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "render/strategy_names.h"
 #include "scene/limits.h"
 #include "tools/calibrations.h"
 #include "tools/camera_paths.h"
+#include "tools/text.h"
 
 namespace scenegen::tools {
 namespace {
@@ -83,6 +85,28 @@ void add_drawing_options(Options& options, DrawingOptions& d, Value strategy, Va
       "measured for such pictures, else a quick measurement");
   options.add("--barriers", choice_value<bool>(d.full_barriers, {{"exact", false}, {"full", true}}),
               "full: a full barrier at every step, to look for missing ones");
+}
+
+Result<void> check_strategies(std::span<const std::string> strategies, bool show_nodes,
+                              bool late_visibility) {
+  const auto check = [&](const char* option, bool render::StrategyTraits::*trait,
+                         const std::string& lacks) -> Result<void> {
+    const bool any = std::any_of(strategies.begin(), strategies.end(), [&](const std::string& name) {
+      return render::strategy_traits(name).*trait;
+    });
+    if (any) return {};
+    return fail(ErrorKind::usage, option,
+                "'" + join(strategies, ",") + "' " + lacks +
+                    "; allowed: " + join(render::strategies_that(trait), ", "));
+  };
+  if (show_nodes) {
+    if (auto fits = check("--show-nodes", &render::StrategyTraits::keeps_nodes, "keeps no nodes"); !fits)
+      return fits;
+  }
+  if (late_visibility)
+    return check("--late-visibility", &render::StrategyTraits::can_be_late,
+                 "draws the same with and without it");
+  return {};
 }
 
 void add_device_options(Options& options, DrawingOptions& d, std::optional<Value> several) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,9 @@ struct DrawingOptions {
 
 /// Group "Drawing". How --strategy and --frames-in-flight are read differs from verb to verb.
 void add_drawing_options(Options& options, DrawingOptions& drawing, Value strategy, Value frames_in_flight);
+/// Refuses --show-nodes and --late-visibility where none of these strategies knows what they mean.
+[[nodiscard]] Result<void> check_strategies(std::span<const std::string> strategies, bool show_nodes,
+                                            bool late_visibility);
 /// Group "Device". `several`: how --device is read where it may be given several times.
 void add_device_options(Options& options, DrawingOptions& drawing, std::optional<Value> several = {});
 

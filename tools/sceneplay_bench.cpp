@@ -148,6 +148,10 @@ int bench_verb(std::span<const std::string> arguments) {
     if (options.given("--camera") && options.given("--camera-path"))
       return fail(ErrorKind::usage, "--camera", "has no place beside --camera-path");
     if (request.quick) be_quick(options, request);
+    std::vector<std::string> strategies;
+    for (const BenchWay& way : request.ways) strategies.push_back(way.strategy);
+    if (auto known = check_strategies(strategies, false, request.drawing.late_visibility); !known)
+      return known;
     return {};
   };
   return run_verb(options, arguments, {.check = check, .work = [&]() -> Result<int> {

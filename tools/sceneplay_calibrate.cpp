@@ -48,18 +48,20 @@ std::string table(const render::Calibration& c) {
   for (const render::UnitName& unit : render::unit_names()) {
     std::string what(unit.meaning);
     if (holds(c.not_measured, unit.name)) what += " (not measured: rough)";
-    if (holds(c.clamped, unit.name)) what += " (came out below 0)";
-    const auto add = [&](const std::string& cost, const std::string& more) {
-      out.row({std::string(unit.name), std::string(unit.symbol), cost, what + more});
+    const bool clamped = holds(c.clamped, unit.name);  // some point of it
+    const auto add = [&](double value, const std::string& cost, const std::string& more) {
+      out.row({std::string(unit.name), std::string(unit.symbol), cost,
+               what + more + (clamped && value == 0.0 ? " (came out below 0)" : "")});
     };
     const auto points = [&](const render::model::Curve& curve, const std::string& more) {
       for (std::size_t i = 0; i < curve.x.size(); ++i)
-        add(unit.share ? number_text(curve.y[i]) : duration_text(curve.y[i]),
+        add(curve.y[i], unit.share ? number_text(curve.y[i]) : duration_text(curve.y[i]),
             ", " + more + number_text(curve.x[i]) + " " + std::string(unit.x));
     };
     if (unit.value != nullptr) {
       const double value = c.costs.*unit.value;
-      add(unit.share   ? number_text(value)
+      add(value,
+          unit.share   ? number_text(value)
           : unit.bytes ? number_text(value) + " B"
                        : duration_text(value),
           "");

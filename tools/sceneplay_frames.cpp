@@ -1,6 +1,5 @@
 // sceneplay frames FILE -o DIR: plays a file and writes one picture a frame.
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cstdio>
 #include <deque>
@@ -440,12 +439,10 @@ int frames_verb(std::span<const std::string> arguments) {
       return fail(ErrorKind::usage, "--times", "has no place beside --fps and --duration");
     if (options.given("--camera") && options.given("--camera-path"))
       return fail(ErrorKind::usage, "--camera", "has no place beside --camera-path");
-    constexpr std::array kWithNodes{"octree", "queries-all", "queries", "adaptive"};
-    if (request.show_nodes &&
-        std::find(kWithNodes.begin(), kWithNodes.end(), request.strategy) == kWithNodes.end())
-      return fail(
-          ErrorKind::usage, "--show-nodes",
-          "'" + request.strategy + "' keeps no nodes; allowed: octree, queries-all, queries and adaptive");
+    if (auto known =
+            check_strategies({&request.strategy, 1}, request.show_nodes, request.drawing.late_visibility);
+        !known)
+      return known;
     if (!request.camera_path.empty()) {
       if (auto readable = check_camera_path(request.camera_path); !readable) return readable;
     }

@@ -26,14 +26,25 @@ std::span<const StrategyEntry> strategies() {
                     &make_inline_queries},
       StrategyEntry{"instanced", "the same, with one instanced draw for all that are equal", &make_instanced},
       StrategyEntry{"octree-record", "octree culling, commands recorded each frame", &make_octree_record},
-      StrategyEntry{"octree", "octree culling, commands of each node kept", &make_octree},
-      StrategyEntry{"queries-all", "the same, with an occlusion query for every node", &make_queries_all},
-      StrategyEntry{"queries", "the same, with as many occlusion queries as pay", &make_queries},
-      StrategyEntry{"hi-z", "frustum and occlusion culling of every object on the device", &make_hi_z},
+      StrategyEntry{
+          "octree", "octree culling, commands of each node kept", &make_octree, {.keeps_nodes = true}},
+      StrategyEntry{"queries-all",
+                    "the same, with an occlusion query for every node",
+                    &make_queries_all,
+                    {.keeps_nodes = true, .can_be_late = true}},
+      StrategyEntry{"queries",
+                    "the same, with as many occlusion queries as pay",
+                    &make_queries,
+                    {.uses_costs = true, .keeps_nodes = true, .can_be_late = true}},
+      StrategyEntry{"hi-z",
+                    "frustum and occlusion culling of every object on the device",
+                    &make_hi_z,
+                    {.can_be_late = true}},
       StrategyEntry{
           "adaptive",
           "the cheapest of inline, octree, queries and hi-z by a model of what they cost, each frame",
-          &make_adaptive},
+          &make_adaptive,
+          {.uses_costs = true, .keeps_nodes = true, .can_be_late = true}},
   };
   return kEntries;
 }
@@ -45,8 +56,17 @@ const StrategyEntry* find_strategy(std::string_view name) {
   return found == all.end() ? nullptr : &*found;
 }
 
-bool strategy_uses_costs(std::string_view name) {
-  return name == "queries" || name == "adaptive";
+StrategyTraits strategy_traits(std::string_view name) {
+  const StrategyEntry* found = find_strategy(name);
+  return found == nullptr ? StrategyTraits{} : found->traits;
+}
+
+std::vector<std::string> strategies_that(bool StrategyTraits::*trait) {
+  std::vector<std::string> out;
+  for (const StrategyEntry& entry : strategies()) {
+    if (entry.traits.*trait) out.emplace_back(entry.name);
+  }
+  return out;
 }
 
 std::vector<std::pair<std::string, std::string>> strategy_choices() {

@@ -15,6 +15,7 @@
 #include "render/node_overlay.h"
 #include "render/plan_counters.h"
 #include "render/stage_timer.h"
+#include "render/strategy_names.h"
 #include "render/strategy_options.h"
 #include "render/view.h"
 
@@ -112,6 +113,7 @@ struct StrategyEntry {
   std::string_view name;
   std::string_view summary;
   std::unique_ptr<Strategy> (*make)(const StrategyContext& context);
+  StrategyTraits traits = {};
 };
 
 /// All strategies, in the order in which help lists them.

@@ -84,6 +84,8 @@ TEST_CASE("ways of drawing are read with their modifiers") {
   CHECK((*ways)[1].octree_n == 100);
   CHECK((*ways)[2].late);
   CHECK(parse_ways("octre").error().str().find("did you mean 'octree'") != std::string::npos);
+  CHECK(parse_ways("octree:late").error().str().find("draws the same with and without ':late'") !=
+        std::string::npos);
   CHECK(parse_ways("octree:lat").error().str().find("did you mean 'late'") != std::string::npos);
   for (const char* wrong : {"", "inline,", "inline,inline", "octree:n=0", "octree:n=x", "octree:"}) {
     INFO(wrong);

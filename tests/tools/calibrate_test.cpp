@@ -111,6 +111,8 @@ TEST_CASE("calibrate: kept in the cache, found there, taken as a file, refused f
   write_file(bad, text.substr(0, text.size() / 3));
   check_error(play(matching + " --calibration " + bad, cache), 1, bad + ": is damaged");
   check_error(play(matching + " --calibration " + folder.file("none.json"), cache), 3, "none.json");
+  check_error(play(matching + " --calibration qick", cache), 2,
+              "--calibration: no file 'qick'; unknown word 'qick' (did you mean 'quick'?");
   CHECK(names_in(cache + "/scenegen") == kept);  // all the while it stayed as it was
   CHECK(read_file(file) == text);
 }
@@ -145,6 +147,7 @@ TEST_CASE("frames: without a good calibration a quick one runs, says so, and is 
   const ProcessResult again = play(call, cache);
   CHECK(again.code == 0);
   CHECK_THAT(again.err, Catch::Matchers::Contains("note: " + file + ": is damaged"));
+  CHECK_THAT(again.err, Catch::Matchers::Contains("a quick calibration runs and replaces that"));
   CHECK(json::parse(read_file(file))["schema"] == "sceneplay/calibration");
   std::filesystem::remove_all(cache);
   CHECK(play(call + " --calibration quick", cache).code == 0);

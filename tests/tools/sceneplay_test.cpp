@@ -107,7 +107,9 @@ TEST_CASE("frames: dates of a file with a calendar, and without one") {
   CHECK(report["frames"][1]["date"] == "2024-03-05");
   CHECK(report["frames"][3]["date"] == "2024-03-02T12:00:00");
   check_error(play("frames " + wall_file(folder) + to + " --times 0 --show-nodes --strategy hi-z"), 2,
-              "--show-nodes: 'hi-z' keeps no nodes");
+              "--show-nodes: 'hi-z' keeps no nodes; allowed: octree, queries-all, queries, adaptive");
+  check_error(play("frames " + wall_file(folder) + to + " --times 0 --late-visibility"), 2,
+              "--late-visibility: 'inline' draws the same with and without it; allowed: queries-all");
   check_error(play("frames " + wall_file(folder) + to + " --times 2024-03-01"), 2,
               "--times: '2024-03-01': the file has no calendar (scenegen schedule makes files that have)");
 }
