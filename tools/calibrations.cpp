@@ -1,5 +1,6 @@
 #include "tools/calibrations.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -68,7 +69,17 @@ Result<std::string> store_calibration(const render::Calibration& calibration) {
 }
 
 Value calibration_value(std::string& target) {
-  return text_value(target, "FILE|WORD", "a file, or auto, quick, none");
+  Value value = text_value(target, "FILE|WORD", "a file, or auto, quick, none");
+  value.parse = [take = value.parse](std::string_view text) -> Result<void> {
+    const std::vector<std::string> words{"auto", "quick", "none"};
+    std::error_code ignored;
+    // A name without dot and slash that is no file is a word misspelt, in all likelihood.
+    if (std::find(words.begin(), words.end(), text) == words.end() &&
+        text.find_first_of("./") == std::string_view::npos && !std::filesystem::exists(text, ignored))
+      return fail(ErrorKind::usage, "", "no such file; " + unknown_word("word", text, words));
+    return take(text);
+  };
+  return value;
 }
 
 Result<void> set_costs(render::RendererOptions& options, const std::string& wanted, bool quiet) {
@@ -81,21 +92,16 @@ Result<void> set_costs(render::RendererOptions& options, const std::string& want
   }
   const render::CalibrationKey key = render::calibration_key(render::info_of(*options.shared_device),
                                                              options.size, options.samples, options.shadows);
+  std::error_code ignored;
   if (wanted != "auto" && wanted != "quick") {
-    // A word that is nearly one of ours names no file, in all likelihood.
-    if (wanted.find_first_of("./") == std::string::npos && !std::filesystem::exists(wanted)) {
-      const std::vector<std::string> words{"auto", "quick", "none"};
-      return fail(ErrorKind::usage, "--calibration",
-                  "no file '" + wanted + "'; " + unknown_word("word", wanted, words));
-    }
     Result<render::Calibration> calibration = load(wanted, key);
     if (!calibration) return forward_error(calibration);
     options.costs = calibration->costs;
     return {};
   }
   const Result<std::string> path = render::calibration_path(key);
-  const bool is_kept = path && std::filesystem::exists(*path);
-  if (wanted == "auto" && is_kept) {
+  const bool is_kept = wanted == "auto" && path && std::filesystem::exists(*path, ignored);
+  if (is_kept) {
     const Result<render::Calibration> kept = load(*path, key);
     if (kept) {
       options.costs = kept->costs;

@@ -73,8 +73,10 @@ void add_drawing_options(Options& options, DrawingOptions& d, Value strategy, Va
       "what costs less on the device");
   options.add("--octree-memory", whole_value(d.octree_mib, std::uint64_t{1}, std::uint64_t{1} << 20, "MIB"),
               "what --strategy octree may take; without room for it, inline is used");
-  options.flag("--late-visibility", d.late_visibility,
-               "queries and hi-z: believe earlier frames; what comes into view may appear frames too late");
+  options.flag(
+      "--late-visibility", d.late_visibility,
+      "with --strategy queries-all, queries, hi-z or adaptive: believe earlier frames; what comes into "
+      "view may appear frames too late");
   options.flag("--no-correction", d.no_correction,
                "adaptive: choose by the model alone, not corrected by what earlier frames took");
   options.add("--frames-in-flight", std::move(frames_in_flight),
@@ -95,8 +97,11 @@ Result<void> check_strategies(std::span<const std::string> strategies, bool show
       return render::strategy_traits(name).*trait;
     });
     if (any) return {};
+    std::vector<std::string> names(strategies.begin(), strategies.end());  // several forms of one: once
+    std::sort(names.begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
     return fail(ErrorKind::usage, option,
-                "'" + join(strategies, ",") + "' " + lacks +
+                (names.size() > 1 ? "each of '" : "'") + join(names, "', '") + "' " + lacks +
                     "; allowed: " + join(render::strategies_that(trait), ", "));
   };
   if (show_nodes) {

@@ -130,13 +130,13 @@ int bench_verb(std::span<const std::string> arguments) {
   if (!arguments.empty() && arguments.front() == "compare") return bench_compare_verb(arguments.subspan(1));
   BenchRequest request;
   request.arguments.assign(arguments.begin(), arguments.end());
-  Options options(
-      "sceneplay bench",
-      {"sceneplay bench FILE... -o DIR [options]", "sceneplay bench --quick -o DIR [options]",
-       "sceneplay bench compare A B [options]"},
-      "measures how long frames take in several ways of drawing: --strategy A,B,C. "
-      "A:late is A with --late-visibility, A:n=100 with --octree-n 100, A:indirect and A:secondaries "
-      "with that --node-form.");
+  Options options("sceneplay bench",
+                  {"sceneplay bench FILE... -o DIR [options]", "sceneplay bench --quick -o DIR [options]",
+                   "sceneplay bench compare A B [options]"},
+                  "measures how long frames take in several ways of drawing: --strategy A,B,C. "
+                  "A:late is A with --late-visibility (where that means something), A:n=100 with --octree-n "
+                  "100, A:indirect and A:secondaries "
+                  "with that --node-form.");
   add_options(options, request);
   const auto check = [&]() -> Result<void> {
     if (request.files.empty() && !request.quick)

@@ -43,15 +43,30 @@ bool holds(const std::vector<std::string>& names, std::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+bool has_zero(const render::model::UnitCosts& costs, const render::UnitName& unit) {
+  const auto zero = [](const render::model::Curve& curve) {
+    return std::find(curve.y.begin(), curve.y.end(), 0.0) != curve.y.end();
+  };
+  if (unit.value != nullptr) return costs.*unit.value == 0.0;
+  if (unit.curve != nullptr) return zero(costs.*unit.curve);
+  return std::any_of((costs.*unit.curves).begin(), (costs.*unit.curves).end(), zero);
+}
+
 std::string table(const render::Calibration& c) {
   Table out({{"unit", "unit"}, {"symbol", "symbol"}, {"cost", "cost"}, {"what", "what"}});
   for (const render::UnitName& unit : render::unit_names()) {
     std::string what(unit.meaning);
     if (holds(c.not_measured, unit.name)) what += " (not measured: rough)";
-    const bool clamped = holds(c.clamped, unit.name);  // some point of it
+    // Some point of it, which later fits may have lifted: then none of its rows is 0, and the first says it.
+    const bool clamped = holds(c.clamped, unit.name);
+    const bool any_zero = clamped && has_zero(c.costs, unit);
+    bool said = false;
     const auto add = [&](double value, const std::string& cost, const std::string& more) {
-      out.row({std::string(unit.name), std::string(unit.symbol), cost,
-               what + more + (clamped && value == 0.0 ? " (came out below 0)" : "")});
+      std::string note;
+      if (clamped && (any_zero ? value == 0.0 : !said))
+        note = any_zero ? " (came out below 0)" : " (a point came out below 0)";
+      said = true;
+      out.row({std::string(unit.name), std::string(unit.symbol), cost, what + more + note});
     };
     const auto points = [&](const render::model::Curve& curve, const std::string& more) {
       for (std::size_t i = 0; i < curve.x.size(); ++i)

@@ -27,7 +27,7 @@ class Runs {
     calibration::TestSizes few;
     few.boxes = {1, 2};
     few_ = calibration::make_test_scene(few, options.size);
-    budget_s_ = options.budget_s > 0.0 ? options.budget_s : options.quick ? 8.0 : software ? 75.0 : 12.0;
+    budget_s_ = options.budget_s > 0.0 ? options.budget_s : options.quick ? 8.0 : software ? 75.0 : 11.0;
     how_.longest_frame_s = software ? 0.5 : 0.05;
     // A round of large pictures takes a software device half of the budget.
     if (software) how_.least_rounds = 1;
@@ -73,10 +73,9 @@ class Runs {
                  : name == "hi-z"                               ? 2
                  : name == "inline"                             ? settle_flat_
                                                                 : settle_;
-    // Two visits to each step at least, and three for small differences. Of ways that take more than their
-    // share a third one cost an H200 1.2 s (`inline-queries`), 2 s with shadows (`inline`): a calibration at
-    // 1920x1080 took 22.5 s (aim 20).
-    if (how.least_rounds > 2 && name != "hi-z") how.least_rounds = 2;
+    // Twice instead of three times each step where a round takes an H200 more than a second: with a third one
+    // a calibration at 1920x1080 with shadows took 22.5 s (aim 20).
+    if (shadows || name == "inline-queries") how.least_rounds = std::min<std::size_t>(how.least_rounds, 2);
     how.progress = [&](double part) {
       if (options_.progress) options_.progress(std::min(1.0, done_ + share * part));
     };
@@ -176,7 +175,7 @@ Result<Calibration> calibrate(const CalibrationOptions& options) {
     return s.trial != Trial::hidden_boxes && !calibration::few_change(s);
   };
   const auto boxes = [](const Step& s) { return s.trial == Trial::empty || s.trial == Trial::boxes; };
-  const double flat_share = !options.shadows ? 0.0 : options.quick ? 0.1 : 0.11;
+  const double flat_share = !options.shadows ? 0.0 : options.quick ? 0.1 : software ? 0.11 : 0.06;
   const double first = (options.quick ? 0.56 : 0.42) - flat_share;
   Result<Run> with = runs.run("inline", 0, options.shadows, first, drawn);
   if (!with) return forward_error(with);

@@ -43,7 +43,7 @@ struct CalibrationOptions {
   std::uint32_t samples = 4;
   bool shadows = true;
   bool quick = false;   ///< fewer sizes and frames: at most about 10 s
-  double budget_s = 0;  ///< about how long; 0: 75 s on a software device, 12 s on others, 8 s when quick
+  double budget_s = 0;  ///< about how long; 0: 75 s on a software device, 11 s on others, 8 s when quick
   /// Called now and then from the same thread with the share that is done.
   std::function<void(double)> progress;
 };

@@ -45,18 +45,11 @@ bool from_empty(Trial trial) {
   return false;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-Stages medians(const std::vector<Stages>& all) {
+Stages medians(const std::vector<Stages>& all, double (*middle)(std::vector<double>)) {
   const auto of = [&](double Stages::*stage) {
     std::vector<double> values(all.size());
     std::transform(all.begin(), all.end(), values.begin(), [&](const Stages& s) { return s.*stage; });
-    return median(std::move(values));
+    return middle(std::move(values));
   };
   return {of(&Stages::update_s), of(&Stages::update_octree_s), of(&Stages::plan_s),     of(&Stages::record_s),
           of(&Stages::keep_s),   of(&Stages::device_s),        of(&Stages::readback_s), of(&Stages::gpu_s)};
@@ -92,10 +85,10 @@ class Measuring {
     const CommandMemoryReport commands = renderer_.memory(player_).commands;
     for (std::size_t i = 0; i < results_.size(); ++i) {
       results_[i].commands = commands;
-      results_[i].steady = medians(samples_[i].steady);
-      results_[i].first = medians(samples_[i].first);
-      results_[i].leave_record_s = median(samples_[i].leave);
-      results_[i].period_s = median(samples_[i].periods);
+      results_[i].steady = medians(samples_[i].steady, median);
+      results_[i].first = medians(samples_[i].first, lower_median);
+      results_[i].leave_record_s = lower_median(samples_[i].leave);
+      results_[i].period_s = lower_median(samples_[i].periods);
       results_[i].samples = samples_[i].steady.size();
     }
     return std::move(results_);
@@ -187,6 +180,20 @@ class Measuring {
 };
 
 }  // namespace
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return values.size() % 2 == 1 ? *middle : 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
+double lower_median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
 Result<std::vector<Measured>> measure(const TestScene& test, const RendererOptions& options,
                                       const MeasureOptions& how,

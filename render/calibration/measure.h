@@ -54,6 +54,12 @@ struct MeasureOptions {
                                                     const MeasureOptions& how,
                                                     const std::function<bool(const Step&)>& wanted);
 
+/// 0 of nothing.
+[[nodiscard]] double median(std::vector<double> values);
+/// The lower of the middle two of an even number. For times that are taken once a visit, so of two or three:
+/// the first visit is a cold one, and the upper of two doubled the units of the octree's updates.
+[[nodiscard]] double lower_median(std::vector<double> values);
+
 /// Least squares through points (x, y): y = offset + slope x. All of one x: slope 0.
 struct Line {
   double offset = 0, slope = 0;

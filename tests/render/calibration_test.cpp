@@ -160,6 +160,16 @@ TEST_CASE("calibration: a line through points") {
   CHECK(calibration::fit_line({3, 3}, {1, 2}).slope == 0);
 }
 
+TEST_CASE("calibration: the middle of few times") {
+  CHECK(calibration::median({}) == 0.0);
+  CHECK(calibration::median({3, 1, 2}) == 2.0);
+  CHECK(calibration::median({4, 1, 3, 2}) == 2.5);
+  CHECK(calibration::lower_median({}) == 0.0);
+  CHECK(calibration::lower_median({9, 1}) == 1.0);
+  CHECK(calibration::lower_median({3, 1, 2}) == 2.0);
+  CHECK(calibration::lower_median({4, 1, 3, 2}) == 2.0);
+}
+
 TEST_CASE("calibration: the test scene shows at each step what it says") {
   const calibration::TestSizes sizes = calibration::test_sizes(true, true);
   const calibration::TestScene test = calibration::make_test_scene(sizes, {320, 180});

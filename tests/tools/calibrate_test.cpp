@@ -112,7 +112,7 @@ TEST_CASE("calibrate: kept in the cache, found there, taken as a file, refused f
   check_error(play(matching + " --calibration " + bad, cache), 1, bad + ": is damaged");
   check_error(play(matching + " --calibration " + folder.file("none.json"), cache), 3, "none.json");
   check_error(play(matching + " --calibration qick", cache), 2,
-              "--calibration: no file 'qick'; unknown word 'qick' (did you mean 'quick'?");
+              "--calibration: no such file; unknown word 'qick' (did you mean 'quick'?");
   CHECK(names_in(cache + "/scenegen") == kept);  // all the while it stayed as it was
   CHECK(read_file(file) == text);
 }
