@@ -66,7 +66,9 @@ std::string table(const render::Calibration& c) {
       if (clamped && (any_zero ? value == 0.0 : !said))
         note = any_zero ? " (came out below 0)" : " (a point came out below 0)";
       said = true;
-      out.row({std::string(unit.name), std::string(unit.symbol), cost, what + more + note});
+      std::string text = what;
+      text.append(more).append(note);
+      out.row({std::string(unit.name), std::string(unit.symbol), cost, std::move(text)});
     };
     const auto points = [&](const render::model::Curve& curve, const std::string& more) {
       for (std::size_t i = 0; i < curve.x.size(); ++i)
