@@ -21,7 +21,9 @@ struct Asked {
   Box box_m;  ///< already grown
   /// Shares the query of the one before: its answer is about all of their boxes.
   bool with_previous = false;
-  std::uint8_t guess = 0;
+  std::uint8_t guess = 0;  ///< why it is asked about, of what is not believed hidden, ...
+  float wrong = 0;         ///< ... how often such guesses were wrong, ...
+  bool limited = false;    ///< ... and whether that limits them
 };
 
 /// How many queries they take.

@@ -21,19 +21,19 @@ constexpr std::uint32_t kForget = 64;
 // of the queries about them; some always.
 constexpr std::size_t kAgainShare = 8, kAgainOfQueries = 2, kAgainLeast = 1;
 constexpr std::size_t kJoinedShare = 2, kJoinedLeast = 8;
-// Of all answers so many may say visible: D allows 30 %, and gathering, at the start, takes some of that.
-constexpr double kWasted = 0.27;
-constexpr double kRoomLeast = 3;
 // Guesses that say visible more often than so are rather wrong, or not worth it though there is room.
 constexpr double kRatherWrong = 0.5, kHopeless = 0.95;
-// Answers are forgotten by so much a frame, and guessed to be half and half, with so much weight, before.
-constexpr double kGuessMemory = 0.98, kGuessWeight = 4;
+// Those that are rather wrong get what is left above this (H200, test set 36: 10.6 ms instead of 11.5).
+constexpr double kRoomSpare = 8;
 // So many known parts around say something.
 constexpr float kAroundLeast = 3;
 // Answers in a row after which a part that is hidden may share a query, how many more of them make it more
 // certain to stay so, and how many parts share one.
 constexpr std::uint32_t kSteady = 5, kSteadiest = 63;
 constexpr std::uint32_t kMostTogether = 32;
+// Of the octree's nodes: with the guesses, a tenth is asked.
+constexpr double kFewQueries = 0.07;
+constexpr int kMostHalved = 4;
 // How often parts that stayed hidden come into view, times their answers in a row: forgotten by so much a
 // frame, and guessed, with so much weight, before it is known.
 constexpr double kRiskMemory = 0.99;
@@ -119,14 +119,10 @@ void QueryChooser::learn(std::span<const Asked> asked, std::span<const std::uint
     sum.queries += 1;
     sum.seconds += hidden ? seconds : 0;
     if (asked[first].believed_hidden) {
-      hidden_answers_ += 1;
-      hidden_visible_ += hidden ? 0 : 1;
       believed += seconds;
       kept += hidden ? seconds : 0.0;
-    } else {
-      guesses_[asked[first].guess].answers += 1;
-      guesses_[asked[first].guess].visible += hidden ? 0 : 1;
     }
+    guesses_.learn(asked[first], hidden);
     doubted_ += steady;
     revealed_ += steady > 0 && !hidden ? 1 : 0;
     const auto queries = static_cast<std::uint64_t>(sum.queries);
@@ -136,9 +132,7 @@ void QueryChooser::learn(std::span<const Asked> asked, std::span<const std::uint
   }
   doubted_ *= kRiskMemory;
   revealed_ *= kRiskMemory;
-  hidden_answers_ *= kGuessMemory;
-  hidden_visible_ *= kGuessMemory;
-  for (Guess& guess : guesses_) guess = {kGuessMemory * guess.answers, kGuessMemory * guess.visible};
+  guesses_.forget();
   if (believed > 0) kept_share_ += 0.1 * (kept / believed - kept_share_);
   if (phase_ == Phase::gathering && !asked.empty()) {
     gathered_.queries += sum.queries;
@@ -269,8 +263,7 @@ std::vector<QueryChooser::Candidate>& QueryChooser::list_of(Why why) {
 void QueryChooser::propose(Candidate candidate, Why why, Around around) {
   candidate.guess =
       static_cast<std::uint8_t>(static_cast<std::size_t>(why) * kArounds + static_cast<std::size_t>(around));
-  const Guess& guess = guesses_[candidate.guess];
-  candidate.wrong = (guess.visible + 0.5 * kGuessWeight) / (guess.answers + kGuessWeight);
+  candidate.wrong = guesses_.wrong(candidate.guess);
   std::vector<Candidate>& list = list_of(why);
   candidate.rank = static_cast<std::uint32_t>(list.size());
   list.push_back(candidate);
@@ -327,8 +320,8 @@ void QueryChooser::ask(const Candidate& candidate, bool hidden, bool with_previo
   part.seconds = static_cast<float>(candidate.seconds);
   part.draws = static_cast<float>(draws_[candidate.end] - draws_[candidate.first]);
   part.chunks = static_cast<float>(candidate.end - candidate.first);
-  const std::uint32_t query =
-      plan.ask({candidate.part, part.revision, hidden, candidate.box_m, with_previous, candidate.guess});
+  const std::uint32_t query = plan.ask({candidate.part, part.revision, hidden, candidate.box_m, with_previous,
+                                        candidate.guess, static_cast<float>(candidate.wrong)});
   last_asked_ = frame_;
   if (!hidden) return;
   for (std::uint32_t i = candidate.first; i < candidate.end; ++i) query_of_[i] = query;
@@ -349,10 +342,9 @@ void QueryChooser::ask_some(std::vector<Candidate>& candidates, std::size_t most
   for (const Candidate& candidate : candidates) ask(candidate, false, false, plan);
 }
 
-/// Asks what is wrong least often first, while there is `room` for answers that say visible: each right guess
-/// makes some, each wrong one takes it. One is made in any case, or nothing would be learned; and of those
-/// that are rather wrong, no more than so many.
-void QueryChooser::guess(std::vector<Candidate>& candidates, std::size_t most, double& room,
+/// Asks what is wrong least often first, while there is room for that with `spare` left, and of those that
+/// are rather wrong no more than `most`. What was asked is taken from the list.
+void QueryChooser::guess(std::vector<Candidate>& candidates, std::size_t most, double spare,
                          QueryPlan& plan) {
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
     if (a.wrong != b.wrong) return a.wrong < b.wrong;
@@ -360,14 +352,14 @@ void QueryChooser::guess(std::vector<Candidate>& candidates, std::size_t most, d
     return a.seconds != b.seconds ? a.seconds > b.seconds : a.rank < b.rank;
   });
   std::size_t count = 0;
-  for (const Candidate& candidate : candidates) {
-    const double taken = candidate.wrong - kWasted;
-    const bool enough = candidate.wrong > kHopeless || (candidate.wrong > kRatherWrong && count >= most);
-    if (count > 0 && (taken > room || enough)) break;
+  for (; count < std::min(candidates.size(), kGatheredAtOnce); ++count) {
+    const Candidate& candidate = candidates[count];
+    if (candidate.wrong > kHopeless || (candidate.wrong > kRatherWrong && count >= most)) break;
+    if (!guesses_.make(candidate.wrong, spare)) break;
     ask(candidate, false, false, plan);
-    room -= taken;
-    ++count;
+    plan.asked.back().limited = true;
   }
+  candidates.erase(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
 void QueryChooser::begin_gathering() {
@@ -379,6 +371,7 @@ void QueryChooser::begin_gathering() {
   window_at_ = 0;
   kept_share_ = 1;
   useless_ = 0;
+  guesses_.begin();
 }
 
 void QueryChooser::rest(bool yes) {
@@ -428,14 +421,13 @@ double QueryChooser::risk() const {
 
 /// Divides hidden_ into batches. One of n parts costs a query, and as often as one of them comes into view, n
 /// times as often as with one part, all are drawn until it is known which: per part that is least where both
-/// are the same. Neighbours in the walk are together, which come into view together.
-void QueryChooser::share_queries(const Frame& frame) {
-  const double query_s = frame.costs.ask_s + frame.costs.receive_s + frame.costs.query_s;
-  const double lost = risk() * settings_.late_frames;
+/// are the same, `risk` being how often a part comes into view, times how long it takes to know which it was.
+/// Neighbours in the walk are together, which come into view together.
+void QueryChooser::divide(double risk, double query_s) {
   for (Candidate& c : hidden_) {
     const Part& part = part_of(c.part);
     c.doubt = doubt(part);
-    c.shares = part.kept >= kSteady && 4.0 * c.seconds * c.doubt * lost <= query_s;  // with one like itself
+    c.shares = part.kept >= kSteady && 4.0 * c.seconds * c.doubt * risk <= query_s;  // with one like itself
   }
   const auto age = [](const Candidate& c) { return c.shares ? std::ilogb(c.doubt) : 0; };
   std::sort(hidden_.begin(), hidden_.end(), [&](const Candidate& a, const Candidate& b) {
@@ -448,12 +440,26 @@ void QueryChooser::share_queries(const Frame& frame) {
       Batch& batch = batches_.back();
       const double doubt = batch.doubt + c.doubt;
       const double seconds = batch.seconds + c.seconds;
-      if (batch.count < kMostTogether && doubt * seconds * lost <= query_s) {
+      if (batch.count < kMostTogether && doubt * seconds * risk <= query_s) {
         batch = {batch.first, batch.count + 1, seconds, doubt};
         continue;
       }
     }
     batches_.push_back({i, 1, c.seconds, c.doubt});
+  }
+}
+
+/// ... and where that makes more than few queries, as if less came into view. That is mostly so: the risk
+/// rests on parts that were there for long, and has a frame's worth of those, or is remembered of something
+/// else.
+void QueryChooser::share_queries(const Frame& frame) {
+  const double query_s = frame.costs.ask_s + frame.costs.receive_s + frame.costs.query_s;
+  const auto few = static_cast<std::size_t>(kFewQueries * static_cast<double>(frame.tree.node_count()));
+  double lost = risk() * settings_.late_frames;
+  divide(lost, query_s);
+  for (int halved = 0; halved < kMostHalved && batches_.size() > few; ++halved) {
+    lost *= 0.5;
+    divide(lost, query_s);
   }
   std::sort(batches_.begin(), batches_.end(), [](const Batch& a, const Batch& b) {
     return a.seconds != b.seconds ? a.seconds > b.seconds : a.first < b.first;
@@ -534,13 +540,11 @@ void QueryChooser::ask_best(const Frame& frame, QueryPlan& plan) {
     ask_some(again_, again, plan);
     return ask_some(unknown_, kGatheredAtOnce, plan);
   }
-  // As long as little is known to be hidden, the share of nothing would keep more from being found.
-  double room = kWasted * static_cast<double>(plan.queries);
-  if (hidden_answers_ > 0.0) room *= 1.0 - hidden_visible_ / hidden_answers_ / kWasted;
-  room = std::max(room, kRoomLeast);
-  guess(joined_, std::max(kJoinedLeast, parts / kJoinedShare), room, plan);
-  guess(again_, again, room, plan);
-  guess(unknown_, kGatheredAtOnce, room, plan);
+  guesses_.begin_frame(plan.queries);
+  guess(joined_, std::max(kJoinedLeast, parts / kJoinedShare), 0.0, plan);
+  guess(again_, again, 0.0, plan);
+  guess(unknown_, kGatheredAtOnce, 0.0, plan);
+  guess(again_, kGatheredAtOnce, kRoomSpare, plan);
 }
 
 void QueryChooser::choose(const Frame& frame, QueryPlan& plan) {

@@ -1,7 +1,6 @@
 // Which parts of an octree to ask about in a pass, from the answers so far (D 3.2): processor code only.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "render/spatial/octree.h"
 #include "render/spatial/query_box.h"
 #include "render/strategy/estimate_load.h"
+#include "render/strategy/guesses.h"
 #include "render/strategy/query_plan.h"
 #include "scene/held_bytes.h"
 
@@ -26,13 +26,15 @@ namespace scenegen::render {
 /// Parts that stay hidden share queries, several boxes to one (the multiqueries of CHC++, Mattausch, Bittner
 /// and Wimmer 2008). Its answer is about all of them: when one comes into view all are drawn, and each is
 /// asked by itself for a while. So as many share one as make what is drawn for nothing then, by how often
-/// parts that stayed hidden came into view, cost what a query does.
+/// parts that stayed hidden came into view, cost what a query does; and more where a tenth of the nodes would
+/// be asked.
 ///
 /// Three phases. *Gathering*: heavy parts (3.5) that were never asked are, largest first, some in each frame;
 /// everything is drawn. Then hidden(x) is fitted and x* asked for; if that is 0, *resting*: nothing is asked
 /// until the view has changed much or some time has passed. Else *asking*, fitted anew in each frame: what is
-/// believed hidden, and of what may be hidden as much as leaves few of all answers that say visible, by how
-/// often such guesses were wrong, those first that are wrong least often: where most around is hidden.
+/// believed hidden, and of what may be hidden as much as leaves few of all answers that say visible, counted
+/// over all frames, by how often such guesses were wrong, those first that are wrong least often: where most
+/// around is hidden.
 class QueryChooser {
  public:
   /// Parts never asked before that may be asked in a frame of gathering.
@@ -126,10 +128,7 @@ class QueryChooser {
   /// What is known around it: nothing, or how much of that is hidden.
   enum class Around : std::uint8_t { unknown, fifth, half, most, nearly_all };
   static constexpr std::size_t kWhys = 3, kArounds = 5;
-  /// Answers to one kind of guess, forgotten slowly.
-  struct Guess {
-    double answers = 0, visible = 0;
-  };
+  static_assert(kWhys * kArounds == Guesses::kKinds);
   /// Sums over queries.
   struct Sum {
     double queries = 0, chunks = 0, draws = 0, seconds = 0;
@@ -153,6 +152,7 @@ class QueryChooser {
   [[nodiscard]] model::QueryProblem problem(const Frame& frame) const;
   [[nodiscard]] static double doubt(const Part& part);
   [[nodiscard]] double risk() const;
+  void divide(double risk, double query_s);
   void share_queries(const Frame& frame);
   [[nodiscard]] std::size_t decide(const Frame& frame);
   void begin_gathering();
@@ -161,7 +161,7 @@ class QueryChooser {
   void ask_best(const Frame& frame, QueryPlan& plan);
   void ask(const Candidate& candidate, bool hidden, bool with_previous, QueryPlan& plan);
   void ask_some(std::vector<Candidate>& candidates, std::size_t most, QueryPlan& plan);
-  void guess(std::vector<Candidate>& candidates, std::size_t most, double& room, QueryPlan& plan);
+  void guess(std::vector<Candidate>& candidates, std::size_t most, double spare, QueryPlan& plan);
   void observe(const Sum& sum);
 
   static constexpr std::uint32_t kNodeBit = 0x80000000U;
@@ -189,8 +189,7 @@ class QueryChooser {
   std::vector<Sum> curve_;                  // of batches_, sorted: the first i of them
   double kept_share_ = 1;                   // of what was believed hidden, found so again
   double doubted_ = 0, revealed_ = 0;       // parts that stayed hidden, queries that found them visible
-  std::array<Guess, kWhys * kArounds> guesses_;
-  double hidden_visible_ = 0, hidden_answers_ = 0;  // queries about what is believed hidden
+  Guesses guesses_;
   double best_ = 0;
   std::uint32_t last_asked_ = 0, useless_ = 0, wake_ = 0, rest_ = 0;
   double seconds_at_rest_ = 0;

@@ -347,3 +347,34 @@ TEST_CASE("parts too light to be asked about do not keep those around them from 
   CHECK(world.plan.second.size() >= world.truly_hidden() * 9 / 10);
   CHECK(world.hidden_parts() * 8 <= world.plan.second.size());
 }
+
+TEST_CASE("what was seen and gets hidden is soon found, by what guesses were saved up before") {
+  World world({true, true, true}, model::rough_costs(false));
+  world.wall_z_m = -70;
+  run(world, 300);
+  const std::size_t hidden_before = world.plan.second.size();
+  world.wall_z_m = -20;
+  REQUIRE(world.truly_hidden() > 2 * hidden_before);
+  Totals totals = run(world, 20);
+  // 423 of 472; without saving 221.
+  CHECK(world.plan.second.size() >= world.truly_hidden() * 8 / 10);
+  const Totals later = run(world, 140);
+  totals.answered += later.answered;
+  totals.hidden_answers += later.hidden_answers;
+  CHECK(static_cast<double>(totals.answered - totals.hidden_answers) <=
+        0.3 * static_cast<double>(totals.answered));
+}
+
+TEST_CASE("however little queries cost, few nodes are asked") {
+  model::UnitCosts costs = model::rough_costs(false);
+  for (double* unit : {&costs.ask_s, &costs.receive_s, &costs.query_s}) *unit *= 1e-3;
+  World world({true, true, true}, costs);
+  run(world, 60);
+  REQUIRE(world.hidden_parts() > 40);  // so many queries it would be
+  for (int i = 0; i < 60; ++i) {
+    run(world, 1);
+    CHECK(static_cast<double>(world.hidden_queries()) <=
+          0.07 * static_cast<double>(world.tree->node_count()));
+  }
+  CHECK(world.plan.second.size() == world.truly_hidden());
+}
