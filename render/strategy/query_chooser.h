@@ -156,6 +156,7 @@ class QueryChooser {
   void share_queries(const Frame& frame);
   [[nodiscard]] std::size_t decide(const Frame& frame);
   void begin_gathering();
+  void cut();
   void begin_resting();
   void gather(const Frame& frame, QueryPlan& plan);
   void ask_best(const Frame& frame, QueryPlan& plan);
@@ -192,7 +193,7 @@ class QueryChooser {
   Guesses guesses_;
   double best_ = 0;
   std::uint32_t last_asked_ = 0, useless_ = 0, wake_ = 0, rest_ = 0;
-  double seconds_at_rest_ = 0;
+  double seconds_at_rest_ = 0, seconds_before_ = 0;
 };
 
 }  // namespace scenegen::render

@@ -57,6 +57,11 @@ class World {
     tree->refresh();
   }
 
+  /// From the same place, through another lens.
+  void zoom(float yfov_rad) {
+    view_ = make_view(look_at({0, 0, 60}, {0, 0, 0}), {false, yfov_rad, 1, 1, 0.1F, 0}, 4.0F / 3.0F);
+  }
+
   /// One frame; answers come two frames later.
   void frame() {
     chunks.clear();
@@ -363,6 +368,23 @@ TEST_CASE("what was seen and gets hidden is soon found, by what guesses were sav
   totals.hidden_answers += later.hidden_answers;
   CHECK(static_cast<double>(totals.answered - totals.hidden_answers) <=
         0.3 * static_cast<double>(totals.answered));
+}
+
+TEST_CASE("after a cut what was seen is asked again at once") {
+  World world({true, true, true}, model::rough_costs(false));
+  world.wall_z_m = -80;
+  run(world, 400);
+  REQUIRE(world.chooser.phase() == QueryChooser::Phase::asking);
+  const auto guesses = [&] { return world.plan.asked.size() - world.hidden_parts(); };
+  world.zoom(0.35F);
+  run(world, 20);
+  REQUIRE(world.chooser.phase() == QueryChooser::Phase::asking);
+  CHECK(guesses() < 8);
+  world.zoom(1.2F);
+  run(world, 1);
+  CHECK(guesses() > 24);
+  run(world, 40);
+  CHECK(guesses() < 8);
 }
 
 TEST_CASE("however little queries cost, few nodes are asked") {
