@@ -9,8 +9,9 @@
 
 namespace scenegen::render {
 
-/// An account of answers that say visible. What a frame does not need is saved up, for cuts; a frame has some
-/// in any case, or nothing would be found where nothing is known to be hidden.
+/// An account of answers that say visible. What a frame does not need is saved up, for cuts; a frame that
+/// asks little has some in any case, or nothing would be found where nothing is known to be hidden. Debts are
+/// mostly forgiven: a change of view makes many guesses wrong at once, and says nothing of those after it.
 class Guesses {
  public:
   /// By why something is guessed and by what is known around it.
@@ -29,7 +30,7 @@ class Guesses {
     return (k.visible + 0.5 * kWeight) / (k.answers + kWeight);
   }
   void begin() { room_ = std::max(room_, kAtFirst); }
-  /// In another view.
+  /// In another view: what was saved stays.
   void begin_anew() {
     kinds_ = {};
     begin();
@@ -63,7 +64,7 @@ class Guesses {
   }
 
  private:
-  // The least that a frame has pays back what is owed in three frames.
+  // The least that a frame has pays back what is owed in three frames that ask nothing else.
   static constexpr double kAtFirst = 16, kMost = 64, kLeast = 0.8, kOwed = 2;
   // Answers are forgotten by so much a frame, and guessed to be half and half, with so much weight, before.
   static constexpr double kMemory = 0.98, kWeight = 4;

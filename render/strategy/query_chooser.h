@@ -26,8 +26,8 @@ namespace scenegen::render {
 /// Parts that stay hidden share queries, several boxes to one (the multiqueries of CHC++, Mattausch, Bittner
 /// and Wimmer 2008). Its answer is about all of them: when one comes into view all are drawn, and each is
 /// asked by itself for a while. So as many share one as make what is drawn for nothing then, by how often
-/// parts that stayed hidden came into view, cost what a query does; and more where a tenth of the nodes would
-/// be asked.
+/// parts that stayed hidden came into view, cost what a query does; and more where a large share of the
+/// nodes would be asked even so.
 ///
 /// Three phases. *Gathering*: heavy parts (3.5) that were never asked are, largest first, some in each frame;
 /// everything is drawn. Then hidden(x) is fitted and x* asked for; if that is 0, *resting*: nothing is asked
