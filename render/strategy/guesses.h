@@ -20,7 +20,7 @@ class Guesses {
   static constexpr double kWasted = 0.27;
   /// Those that say visible more often than so are rather wrong, or not worth it though there is room.
   static constexpr double kRatherWrong = 0.5, kHopeless = 0.95;
-  /// What is left above this goes to those that are rather wrong (H200, test set 36: 10.6 ms instead
+  /// What is left above this goes to those that are rather wrong (H200, test set 36: 10.4 ms instead
   /// of 11.5).
   static constexpr double kSpare = 8;
 

@@ -27,7 +27,7 @@ constexpr float kAroundLeast = 3;
 // certain to stay so, and how many parts share one.
 constexpr std::uint32_t kSteady = 5, kSteadiest = 63;
 constexpr std::uint32_t kMostTogether = 32;
-// Of the octree's nodes: with the guesses, a tenth is asked.
+// Of the octree's nodes: with the guesses, at most about a tenth is asked.
 constexpr double kFewQueries = 0.07;
 constexpr int kMostHalved = 4;
 // How often parts that stayed hidden come into view, times their answers in a row: forgotten by so much a
@@ -463,10 +463,9 @@ void QueryChooser::share_queries(const Frame& frame) {
   const double query_s = frame.costs.ask_s + frame.costs.receive_s + frame.costs.query_s;
   const auto few = static_cast<std::size_t>(kFewQueries * static_cast<double>(frame.tree.node_count()));
   double lost = risk() * settings_.late_frames;
-  divide(lost, query_s);
-  for (int halved = 0; halved < kMostHalved && batches_.size() > few; ++halved) {
-    lost *= 0.5;
+  for (int halved = 0;; ++halved, lost *= 0.5) {
     divide(lost, query_s);
+    if (batches_.size() <= few || halved == kMostHalved) break;
   }
   std::sort(batches_.begin(), batches_.end(), [](const Batch& a, const Batch& b) {
     return a.seconds != b.seconds ? a.seconds > b.seconds : a.first < b.first;
